@@ -1,0 +1,1 @@
+"""The values that flow through murkscan: frozen, without files and without settings."""

@@ -1,0 +1,20 @@
+"""The whole instrument: a camera and the lasers beside it."""
+
+from dataclasses import dataclass
+
+from .camera import Camera
+from .laser import Laser
+from .pose import Pose
+
+
+@dataclass(frozen=True, eq=False)
+class Rig:
+    """A camera and its lasers, rigidly joined."""
+
+    camera: Camera
+    lasers: tuple[Laser, ...] = ()
+    """The lasers; none before `calibrate laser` has run."""
+    wavelength: float = 532e-9
+    """Wavelength of the lasers [m]."""
+    vehicle_from_camera: Pose | None = None
+    """The mount, where the rig sits on a vehicle whose own poses are logged."""
