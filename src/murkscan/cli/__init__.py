@@ -1,1 +1,3 @@
-"""cli."""
+"""The command line: one file a command, each of which parses, then imports, then calls."""
+
+from .main import main as main

@@ -2,7 +2,15 @@
 
 from dataclasses import dataclass, fields
 
-from .arrays import Mask, Normals, Points, Ratios, SignedFrameNumbers
+from .arrays import (
+    Mask,
+    Normals,
+    Points,
+    Ratios,
+    ScanLines,
+    SignedFrameNumbers,
+    SmallNumbers,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,6 +31,10 @@ class PointCloud:
     """Standard deviation of the part common to the scan [m]; 0 where the rig states none."""
     frame: SignedFrameNumbers
     """Index of the frame that saw the point."""
+    scan_line: ScanLines
+    """Image column (stripe along rows) or row (stripe along columns) that saw the point [px]."""
+    laser: SmallNumbers
+    """Number of the laser in the rig."""
 
     def __len__(self) -> int:
         """Count the points."""

@@ -1,6 +1,9 @@
 """The laser line in space."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
+
+import numpy as np
 
 from .arrays import FrameNumbers, Mask, Pixels, Points, Ratios, Scalars, SmallNumbers
 
@@ -30,6 +33,29 @@ class Profile:
         """Count the points."""
         return len(self.frame)
 
+    @classmethod
+    def concatenate(cls, profiles: Sequence["Profile"]) -> "Profile":
+        """Put profiles one after another; none make a profile of length 0."""
+        parts = [empty_profile(), *profiles]
+        return cls(
+            *(np.concatenate([getattr(part, c.name) for part in parts]) for c in fields(cls))
+        )
+
     def __getitem__(self, which: Mask | slice) -> "Profile":
         """Pick some of the points."""
         return Profile(*(getattr(self, column.name)[which] for column in fields(self)))
+
+
+def empty_profile() -> Profile:
+    """Make the profile of a frame that shows no stripe."""
+    ratio = np.zeros(0, np.float32)
+    return Profile(
+        frame=np.zeros(0, np.uint32),
+        time=np.zeros(0),
+        laser=np.zeros(0, np.uint8),
+        pixels=np.zeros((0, 2)),
+        points=np.zeros((0, 3)),
+        sigma=ratio,
+        signal=ratio,
+        posterior=ratio,
+    )

@@ -43,13 +43,9 @@ class Stripe:
     @classmethod
     def concatenate(cls, stripes: Sequence["Stripe"]) -> "Stripe":
         """Put stripes one after another; none make a stripe of length 0."""
+        parts = [empty_stripe(), *stripes]
         return cls(
-            *(
-                np.concatenate(
-                    [getattr(empty_stripe(), c.name)] + [getattr(s, c.name) for s in stripes]
-                )
-                for c in fields(cls)
-            )
+            *(np.concatenate([getattr(part, c.name) for part in parts]) for c in fields(cls))
         )
 
 

@@ -1,0 +1,63 @@
+"""The names of the Choices on the command line, and what a user may set of them."""
+
+import dataclasses
+import importlib
+from typing import TYPE_CHECKING, Any, Literal
+
+from ..errors import InputError
+
+if TYPE_CHECKING:
+    from ..extract import AbstractExtractor
+    from ..mesh import AbstractMesher
+    from ..triangulate import AbstractTriangulation
+
+ExtractorName = Literal["threshold-skeleton", "gray-gravity", "gaussian", "steger"]
+MethodName = Literal["ray-sheet", "equation-4"]
+MesherName = Literal["grid", "poisson"]
+
+_EXTRACTORS: dict[ExtractorName, str] = {
+    "threshold-skeleton": "ThresholdSkeleton",
+    "gray-gravity": "GrayGravity",
+    "gaussian": "GaussianFit",
+    "steger": "Steger",
+}
+_METHODS: dict[MethodName, str] = {"ray-sheet": "RaySheet", "equation-4": "BaselineAngle"}
+_MESHERS: dict[MesherName, str] = {"grid": "GridMesh", "poisson": "Poisson"}
+
+
+def make_extractor(name: ExtractorName, settings: tuple[str, ...]) -> "AbstractExtractor":
+    """Make the extractor of a name, with settings given as `field=value`."""
+    return _make("extract", _EXTRACTORS[name], settings)
+
+
+def make_method(name: MethodName) -> "AbstractTriangulation":
+    """Make the triangulation of a name."""
+    return _make("triangulate", _METHODS[name], ())
+
+
+def make_mesher(name: MesherName, settings: tuple[str, ...]) -> "AbstractMesher":
+    """Make the mesher of a name, with settings given as `field=value`."""
+    return _make("mesh", _MESHERS[name], settings)
+
+
+def _make(stage: str, choice: str, settings: tuple[str, ...]) -> Any:
+    final = getattr(importlib.import_module(f"murkscan.{stage}"), choice)
+    defaults = final()
+    names = [field.name for field in dataclasses.fields(final)]
+    values = {}
+    for setting in settings:
+        name, _, text = setting.partition("=")
+        if name not in names or not text:
+            raise InputError(
+                f"{setting!r} is no setting of {choice}; give --set NAME=NUMBER with a NAME of "
+                f"{', '.join(names)}."
+            )
+        values[name] = _parse(setting, text, getattr(defaults, name))
+    return dataclasses.replace(defaults, **values)
+
+
+def _parse(setting: str, text: str, default: Any) -> int | float:
+    try:
+        return int(text) if isinstance(default, int) else float(text)
+    except ValueError as error:
+        raise InputError(f"--set {setting}: {text!r} is not a number.") from error

@@ -1,0 +1,53 @@
+"""murkscan extract: find the stripe in every frame."""
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from .choices import ExtractorName, make_extractor
+from .options import RecordingFlags
+from .progress import progress_bars
+
+
+def extract(
+    recording: Path,
+    *,
+    rig: Path,
+    out: Path,
+    reading: RecordingFlags = RecordingFlags(),
+    extractor: ExtractorName = "gray-gravity",
+    settings: Annotated[tuple[str, ...], Parameter(name="--set", negative=())] = (),
+    laser: int = 0,
+) -> None:
+    """Find the stripe in every frame of a recording.
+
+    Parameters
+    ----------
+    recording
+        A folder of images, or a video.
+    rig
+        The rig file of the camera and laser that made the recording.
+    out
+        Folder for everything that is made.
+    extractor
+        The way to find the stripe.
+    settings
+        A setting of the extractor, as NAME=NUMBER; may be given again.
+    laser
+        Number of the laser in the rig whose stripe is followed, from 0.
+    """
+    from ..io.rig_toml import load_rig
+    from ..survey.extract import extract_recording
+    from ..survey.scan import begin_scan
+    from .summary import print_result
+
+    of_recording = load_rig(rig)
+    pictures = reading.open(recording, of_recording)
+    project = begin_scan(out, pictures, of_recording, laser=laser)
+    finder = make_extractor(extractor, settings)
+    with progress_bars() as progress:
+        result = extract_recording(
+            project, pictures, of_recording, finder, laser=laser, progress=progress
+        )
+    print_result("extract", result, out / "extract")

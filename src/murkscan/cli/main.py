@@ -1,0 +1,64 @@
+"""The door: commands by name, and what a failure says."""
+
+import sys
+import traceback
+from importlib.metadata import version
+
+from cyclopts import App, CycloptsError
+
+from ..errors import MurkscanError
+
+_COMMANDS = {
+    "demo": "Scan the built-in sample and say how far the model is from the truth.",
+    "calibrate": "Find out what the camera and the laser are.",
+    "capture": "Record a stream or a camera into a file, as it comes.",
+    "scan": "Turn a recording into a measured 3D model: all stages in order.",
+    "extract": "Find the stripe in every frame of a recording.",
+    "triangulate": "Turn stripes into profiles in the camera's frame.",
+    "motion": "Find where the camera was in each frame.",
+    "cloud": "Merge the profiles into one cloud of points.",
+    "mesh": "Make a surface from the cloud.",
+    "view": "Draw pictures of the surface.",
+    "report": "Write a page on how the scan went.",
+}
+"""Each lies in the file of its name, and is imported when it is called: --help stays instant."""
+
+app = App(
+    name="murkscan",
+    help="Measured 3D models of objects in murky water, from a camera and a line laser.",
+    version=lambda: version("murkscan"),
+    version_flags=["--version"],
+)
+for _name, _help in _COMMANDS.items():
+    _target = "app" if _name == "calibrate" else _name
+    app.command(f"murkscan.cli.{_name}:{_target}", name=_name, help=_help)
+
+
+def main() -> None:
+    """Run the command line.
+
+    Exits with 0 when done, 2 when the user's input is at fault, 130 when interrupted, and 1 when
+    murkscan itself is.
+    """
+    sys.exit(run(sys.argv[1:]))
+
+
+def run(arguments: list[str]) -> int:
+    """Run one command and give its exit status."""
+    try:
+        app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
+    except (MurkscanError, CycloptsError) as error:
+        return _say(str(error), 2)
+    except KeyboardInterrupt:
+        return _say("stopped; what is finished is kept, and the same command goes on from it.", 130)
+    except OSError as error:
+        return _say(f"{error.filename or 'a file'} cannot be used: {error.strerror}.", 2)
+    except Exception:
+        traceback.print_exc()
+        return _say("this is a fault of murkscan; please report it with the lines above.", 1)
+    return 0
+
+
+def _say(sentence: str, status: int) -> int:
+    print(f"murkscan: {sentence}", file=sys.stderr)
+    return status

@@ -1,0 +1,33 @@
+"""murkscan mesh: make a surface."""
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from .choices import MesherName, make_mesher
+
+
+def mesh(
+    out: Path,
+    *,
+    mesher: MesherName = "grid",
+    settings: Annotated[tuple[str, ...], Parameter(name="--set", negative=())] = (),
+) -> None:
+    """Make a surface from the cloud of a scan.
+
+    Parameters
+    ----------
+    out
+        Folder of the scan, with a finished cloud stage.
+    mesher
+        The way to make a surface.
+    settings
+        A setting of the mesher, as NAME=NUMBER; may be given again.
+    """
+    from ..project import Project
+    from ..survey.mesh import build_mesh
+    from .summary import print_result
+
+    result = build_mesh(Project(out), make_mesher(mesher, settings))
+    print_result("mesh", result, out / "mesh")

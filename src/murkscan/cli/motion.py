@@ -1,0 +1,25 @@
+"""murkscan motion: where the camera was in each frame."""
+
+from pathlib import Path
+
+from .options import MotionFlags
+
+
+def motion(out: Path, *, flags: MotionFlags = MotionFlags()) -> None:
+    """Find where the camera was in each frame of a scan.
+
+    Parameters
+    ----------
+    out
+        Folder of the scan, with a finished extract stage.
+    """
+    from ..project import Project
+    from ..survey.motion import follow_motion
+    from ..survey.scan import load_scan_rig
+    from .summary import print_result
+
+    project = Project(out)
+    rig = load_scan_rig(project)
+    laser = project.finished("extract").key["settings"]["laser"]
+    result = follow_motion(project, flags.make(rig, laser))
+    print_result("motion", result, out / "motion")

@@ -1,0 +1,89 @@
+"""Flags that several commands share."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from cyclopts import Parameter
+
+from ..errors import InputError
+
+if TYPE_CHECKING:
+    from ..capture import AbstractRecording
+    from ..motion import AbstractMotion
+    from ..types.rig import Rig
+
+
+@Parameter(name="*")
+@dataclass(frozen=True)
+class RecordingFlags:
+    """How to read the recording."""
+
+    fps: float | None = None
+    """Pictures a second, for a folder of images without times.csv."""
+    fields: Literal["auto", "progressive", "top-first", "bottom-first"] = "auto"
+    """Whether each picture holds two fields of an interlaced camera, and which came first; found
+    from the pictures unless said."""
+
+    def open(self, path: Path, rig: "Rig") -> "AbstractRecording":
+        """Open the recording of a rig."""
+        from ..capture import open_recording
+
+        return open_recording(path, wavelength=rig.wavelength, fps=self.fps, fields=self.fields)
+
+
+@Parameter(name="*")
+@dataclass(frozen=True)
+class MotionFlags:
+    """How the camera moved: exactly one of --speed-mm-s, --step-mm and --poses."""
+
+    speed_mm_s: float | None = None
+    """Constant speed [mm/s]; negative for the other way."""
+    step_mm: float | None = None
+    """Constant step [mm] from one recorded picture to the next; negative for the other way."""
+    poses: Path | None = None
+    """Log of poses: CSV with time_s,x_m,y_m,z_m,qw,qx,qy,qz, or TUM."""
+    along: Literal["x", "y", "z"] | None = None
+    """Camera axis of a constant speed or step; the laser's axis unless said."""
+    start_time: str = "0"
+    """When the video began, by the log's clock: seconds, or ISO 8601."""
+    time_offset_s: float = 0.0
+    """Added to recording times [s]."""
+
+    def make(self, rig: "Rig", laser: int) -> "AbstractMotion":
+        """Make the motion that these flags describe."""
+        from ..io.poses import load_poses
+        from ..motion import ConstantSpeed, ConstantStep, PoseLog
+        from ..types.pose import Pose
+
+        given = [flag for flag in (self.speed_mm_s, self.step_mm, self.poses) if flag is not None]
+        if len(given) != 1:
+            raise InputError(
+                f"Give exactly one of --speed-mm-s, --step-mm and --poses, not {len(given)}: "
+                "without knowing how the camera moved there is no model."
+            )
+        along = self.along or rig.lasers[laser].axis
+        if self.speed_mm_s is not None:
+            return ConstantSpeed(self.speed_mm_s / 1e3, along)
+        if self.step_mm is not None:
+            return ConstantStep(self.step_mm / 1e3, along)
+        assert self.poses is not None
+        mount = rig.vehicle_from_camera or Pose.identity()
+        start = _seconds(self.start_time)
+        return PoseLog(load_poses(self.poses), mount, start, self.time_offset_s)
+
+
+def _seconds(text: str) -> float:
+    from datetime import UTC, datetime
+
+    try:
+        return float(text)
+    except ValueError:
+        pass
+    try:
+        moment = datetime.fromisoformat(text)
+    except ValueError as error:
+        raise InputError(
+            f"--start-time {text!r} is neither seconds nor a time such as 2026-05-01T09:30:00Z."
+        ) from error
+    return (moment if moment.tzinfo else moment.replace(tzinfo=UTC)).timestamp()

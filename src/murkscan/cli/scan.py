@@ -1,0 +1,77 @@
+"""murkscan scan: all stages in order."""
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from .choices import (
+    ExtractorName,
+    MesherName,
+    MethodName,
+    make_extractor,
+    make_mesher,
+    make_method,
+)
+from .options import MotionFlags, RecordingFlags
+from .progress import progress_bars
+
+
+def scan(
+    recording: Path,
+    *,
+    rig: Path,
+    out: Path,
+    motion: MotionFlags = MotionFlags(),
+    reading: RecordingFlags = RecordingFlags(),
+    extractor: ExtractorName = "gray-gravity",
+    settings: Annotated[tuple[str, ...], Parameter(name="--set", negative=())] = (),
+    method: MethodName = "ray-sheet",
+    mesher: MesherName = "grid",
+    laser: int = 0,
+    frames: Annotated[bool, Parameter(negative=())] = False,
+) -> None:
+    """Turn a recording into a measured 3D model: all stages in order.
+
+    A stage that is done and unchanged is skipped, an interrupted one goes on where it stopped.
+
+    Parameters
+    ----------
+    recording
+        A folder of images, or a video.
+    rig
+        The rig file of the camera and laser that made the recording.
+    out
+        Folder for everything that is made.
+    extractor
+        The way to find the stripe.
+    settings
+        A setting of the extractor, as NAME=NUMBER; may be given again.
+    method
+        The way from pixels to points.
+    mesher
+        The way to make a surface.
+    laser
+        Number of the laser in the rig whose stripe is followed, from 0.
+    frames
+        Write one cloud a frame for more than 500 frames, too.
+    """
+    from ..io.rig_toml import load_rig
+    from ..survey.scan import scan as run
+    from .summary import print_summary
+
+    of_recording = load_rig(rig)
+    with progress_bars() as progress:
+        project = run(
+            reading.open(recording, of_recording),
+            of_recording,
+            motion.make(of_recording, laser),
+            out=out,
+            extractor=make_extractor(extractor, settings),
+            method=make_method(method),
+            mesher=make_mesher(mesher, ()),
+            laser=laser,
+            frames=frames,
+            progress=progress,
+        )
+    print_summary(project)

@@ -1,0 +1,29 @@
+"""murkscan triangulate: turn stripes into profiles."""
+
+from pathlib import Path
+
+from .choices import MethodName, make_method
+from .progress import progress_bars
+
+
+def triangulate(out: Path, *, method: MethodName = "ray-sheet") -> None:
+    """Turn the stripes of a scan into profiles in the camera's frame.
+
+    Parameters
+    ----------
+    out
+        Folder of the scan, with a finished extract stage.
+    method
+        The way from pixels to points.
+    """
+    from ..project import Project
+    from ..survey.scan import load_scan_rig
+    from ..survey.triangulate import triangulate_stripes
+    from .summary import print_result
+
+    project = Project(out)
+    with progress_bars() as progress:
+        result = triangulate_stripes(
+            project, load_scan_rig(project), make_method(method), progress=progress
+        )
+    print_result("triangulate", result, out / "triangulate")

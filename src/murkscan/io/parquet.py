@@ -1,0 +1,111 @@
+"""Tables of stripes and profiles: Parquet, one part a chunk of frames."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from ..errors import FormatError
+from ..types.profile import Profile
+from ..types.stripe import Stripe
+from .atomic import replacing
+
+
+def save_stripe(path: Path, stripe: Stripe) -> None:
+    """Write stripes as columns.
+
+    Raises:
+        DeviceError: The disk is full or cannot be written.
+    """
+    u, v = stripe.pixels.T
+    columns = {"frame": stripe.frame, "time_s": stripe.time, "u": u, "v": v}
+    columns |= {"sigma": stripe.sigma, "signal": stripe.signal, "posterior": stripe.posterior}
+    _save(path, columns | {"laser": stripe.laser, "branch": stripe.branch})
+
+
+def load_stripe(path: Path) -> Stripe:
+    """Read what `save_stripe` wrote.
+
+    Raises:
+        FormatError: The file is no such table.
+    """
+    columns = _load(path)
+    return Stripe(
+        frame=columns["frame"],
+        time=columns["time_s"],
+        pixels=np.stack([columns["u"], columns["v"]], axis=1),
+        sigma=columns["sigma"],
+        signal=columns["signal"],
+        posterior=columns["posterior"],
+        laser=columns["laser"],
+        branch=columns["branch"],
+    )
+
+
+def save_profile(path: Path, profile: Profile) -> None:
+    """Write profiles as columns.
+
+    Raises:
+        DeviceError: The disk is full or cannot be written.
+    """
+    (u, v), (x, y, z) = profile.pixels.T, profile.points.T
+    columns = {"frame": profile.frame, "time_s": profile.time, "laser": profile.laser}
+    columns |= {"u": u, "v": v, "x_m": x, "y_m": y, "z_m": z, "sigma_m": profile.sigma}
+    _save(path, columns | {"signal": profile.signal, "posterior": profile.posterior})
+
+
+def load_profile(path: Path) -> Profile:
+    """Read what `save_profile` wrote.
+
+    Raises:
+        FormatError: The file is no such table.
+    """
+    columns = _load(path)
+    return Profile(
+        frame=columns["frame"],
+        time=columns["time_s"],
+        laser=columns["laser"],
+        pixels=np.stack([columns["u"], columns["v"]], axis=1),
+        points=np.stack([columns["x_m"], columns["y_m"], columns["z_m"]], axis=1),
+        sigma=columns["sigma_m"],
+        signal=columns["signal"],
+        posterior=columns["posterior"],
+    )
+
+
+def _save(path: Path, columns: Mapping[str, np.ndarray]) -> None:
+    table = pa.table(dict(columns))
+    floats = [name for name in columns if columns[name].dtype.kind == "f"]
+    with replacing(path) as aside:
+        pq.write_table(
+            table,
+            aside,
+            compression="zstd",
+            compression_level=1,
+            use_dictionary=[name for name in columns if name not in floats],
+            use_byte_stream_split=floats,
+        )
+
+
+def _load(path: Path) -> "_Columns":
+    try:
+        table = pq.read_table(path)
+    except (pa.ArrowInvalid, OSError) as error:
+        raise FormatError(f"{path} cannot be read as a table; delete it and run again.") from error
+    return _Columns(
+        path, {name: table[name].combine_chunks().to_numpy() for name in table.column_names}
+    )
+
+
+class _Columns:
+    """Columns by name; a missing one is the file's fault."""
+
+    def __init__(self, path: Path, columns: dict[str, np.ndarray]) -> None:
+        self._path, self._columns = path, columns
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        if name not in self._columns:
+            raise FormatError(f"{self._path} has no column {name}; delete it and run again.")
+        return self._columns[name]

@@ -1,0 +1,52 @@
+"""What every motion can do."""
+
+import abc
+from typing import ClassVar, Literal
+
+import numpy as np
+
+from ..errors import InputError
+from ..types.arrays import Points, Scalars
+from ..types.trajectory import Trajectory
+
+Direction = Literal["x", "y", "z"]
+"""A camera axis to move along."""
+
+
+class AbstractMotion(abc.ABC):
+    """A way to know how the camera moved. Subclasses are final: wrap one, do not subclass it."""
+
+    needs_times: ClassVar[bool]
+    """Whether the recording must have times of its own."""
+
+    @abc.abstractmethod
+    def follow(self, times: Scalars, pictures: Scalars) -> Trajectory:
+        """Give world_from_camera at the time of each frame.
+
+        Args:
+            times: Recording times of the frames [s], strictly increasing, at least one.
+            pictures: Number of the recorded picture of each frame; its second field is at half.
+
+        Returns:
+            The poses at just these times.
+
+        Raises:
+            InputError: The settings say nothing about some of the times.
+        """
+
+
+def follow_line(times: Scalars, distances: Scalars, along: Direction) -> Trajectory:
+    """Move without turning: from the camera's first place by distances [m] along one axis."""
+    positions: Points = np.zeros((len(times), 3))
+    positions[:, "xyz".index(along)] = distances
+    upright = np.tile([1.0, 0.0, 0.0, 0.0], (len(times), 1))
+    return Trajectory(times, positions, upright)
+
+
+def check_pace(pace: float, flag: str) -> None:
+    """Refuse a speed or a step that moves nothing."""
+    if pace == 0 or not np.isfinite(pace):
+        raise InputError(
+            f"{flag} must be a number other than 0, got {pace:g}: a scan needs motion; a negative "
+            "number moves the other way."
+        )

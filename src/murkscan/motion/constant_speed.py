@@ -1,0 +1,33 @@
+"""The paper's motion: a vehicle that keeps its speed and its attitude."""
+
+from dataclasses import dataclass
+from typing import ClassVar, final
+
+from ..types.arrays import Scalars
+from ..types.trajectory import Trajectory
+from .base import AbstractMotion, Direction, check_pace, follow_line
+
+
+@final
+@dataclass(frozen=True)
+class ConstantSpeed(AbstractMotion):
+    """The camera moves at one speed along one of its axes.
+
+    References:
+        The paper's section "Image capture".
+    """
+
+    speed: float
+    """Speed [m/s]; negative for the other way, not zero."""
+    along: Direction
+    """Camera axis along which it moves."""
+
+    needs_times: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        """Refuse a speed that moves nothing."""
+        check_pace(self.speed, "The speed")
+
+    def follow(self, times: Scalars, pictures: Scalars) -> Trajectory:
+        """Give world_from_camera at the time of each frame; see `AbstractMotion.follow`."""
+        return follow_line(times, self.speed * (times - times[0]), self.along)

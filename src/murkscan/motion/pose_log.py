@@ -1,0 +1,39 @@
+"""A vehicle, an arm or a stage that logs where it is."""
+
+from dataclasses import dataclass, field
+from typing import ClassVar, final
+
+from ..errors import InputError
+from ..types.arrays import Scalars
+from ..types.pose import Pose
+from ..types.trajectory import Trajectory
+from .base import AbstractMotion
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class PoseLog(AbstractMotion):
+    """The camera follows a log of poses, sampled at each frame's own time."""
+
+    log: Trajectory
+    """Poses world_from_vehicle, at the log's own times."""
+    vehicle_from_camera: Pose = field(default_factory=Pose.identity)
+    """The mount; the identity where the log is of the camera itself."""
+    start_time: float = 0.0
+    """Log time at which recording time is 0 [s]."""
+    time_offset: float = 0.0
+    """Added to recording times [s], against a clock that runs ahead or behind."""
+
+    needs_times: ClassVar[bool] = True
+
+    def follow(self, times: Scalars, pictures: Scalars) -> Trajectory:
+        """Give world_from_camera at the time of each frame; see `AbstractMotion.follow`."""
+        moments, known = times + self.time_offset + self.start_time, self.log.times
+        if moments[0] < known[0] or moments[-1] > known[-1]:
+            raise InputError(
+                f"The recording runs from {moments[0]:.3f} to {moments[-1]:.3f} s but the pose log "
+                f"from {known[0]:.3f} to {known[-1]:.3f} s. Say with --start-time when the video "
+                "began, or shift its clock with --time-offset-s."
+            )
+        poses = self.log.at(moments).follow_mount(self.vehicle_from_camera)
+        return Trajectory(times, poses.positions, poses.quaternions)

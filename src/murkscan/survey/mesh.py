@@ -1,0 +1,38 @@
+"""Make a surface from a scan's cloud."""
+
+from typing import Any
+
+from ..mesh import AbstractMesher
+from ..project import Project
+from .settings import describe
+
+
+def build_mesh(project: Project, mesher: AbstractMesher) -> dict[str, Any]:
+    """Run the mesh stage.
+
+    Args:
+        project: A scan with a finished cloud stage.
+        mesher: The way to make a surface.
+
+    Returns:
+        Counts: vertices and faces; both 0 for a cloud that has no two neighbouring profiles.
+
+    Raises:
+        MissingResult: The cloud stage has not been finished.
+        MissingDependency: The mesher needs an extra that is not installed.
+        DeviceError: The disk is full.
+    """
+    stage = project.stage(
+        "mesh",
+        settings={"mesher": describe(mesher)},
+        inputs={"cloud": project.finished("cloud").digest},
+    )
+    if (result := stage.result()) is not None:
+        return result
+    mesh = mesher.mesh(project.load_cloud())
+    stage.begin()
+    if len(mesh.faces):
+        project.save_mesh(mesh)
+    result = {"vertices": len(mesh.vertices), "faces": len(mesh.faces)}
+    stage.finish(result)
+    return result

@@ -1,0 +1,50 @@
+"""Where the camera was in each frame of a scan."""
+
+from typing import Any
+
+import numpy as np
+
+from ..errors import InputError
+from ..motion import AbstractMotion
+from ..project import Project
+from .settings import describe
+
+
+def follow_motion(project: Project, motion: AbstractMotion) -> dict[str, Any]:
+    """Run the motion stage.
+
+    Returns:
+        The duration [s], the length of the path [m] and the number of poses.
+
+    Raises:
+        MissingResult: The extract stage has not been finished.
+        InputError: The recording has no times and the motion needs them, or they lie outside its
+            log.
+    """
+    recording = project.load_scan()["recording"]
+    stage = project.stage(
+        "motion",
+        settings={"motion": describe(motion)},
+        inputs={"extract": project.finished("extract").digest},
+    )
+    if (result := stage.result()) is not None:
+        return result
+    if motion.needs_times and not recording["is_timed"]:
+        raise InputError(
+            f"{recording['path']} has no times, and the motion needs them: give --fps, or a "
+            "times.csv in the folder, or say with --step-mm how far the camera moves from picture "
+            "to picture."
+        )
+    clock = project.load_clock()
+    pictures = clock.frame.astype(float) / recording["fields_per_picture"]
+    trajectory = motion.follow(clock.time, pictures)
+    stage.begin()
+    project.save_trajectory(trajectory)
+    steps = np.linalg.norm(np.diff(trajectory.positions, axis=0), axis=1)
+    result = {
+        "poses": len(clock),
+        "duration_s": float(np.ptp(clock.time)),
+        "length_m": float(steps.sum()),
+    }
+    stage.finish(result)
+    return result

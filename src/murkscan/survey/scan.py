@@ -1,0 +1,125 @@
+"""A scan from the recording to the report: the stages in order."""
+
+import platform
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from ..capture import AbstractRecording
+from ..extract import AbstractExtractor, GrayGravity
+from ..io.rig_toml import as_tables, parse_rig
+from ..mesh import AbstractMesher, GridMesh
+from ..motion import AbstractMotion
+from ..project import Project
+from ..triangulate import AbstractTriangulation, RaySheet
+from ..types.rig import Rig
+from .cloud import build_cloud
+from .extract import check_recording, extract_recording
+from .mesh import build_mesh
+from .motion import follow_motion
+from .progress import Progress, silent
+from .report import write_report
+from .settings import describe
+from .triangulate import triangulate_stripes
+from .view import draw_views
+
+
+def scan(
+    recording: AbstractRecording,
+    rig: Rig,
+    motion: AbstractMotion,
+    *,
+    out: Path | str,
+    extractor: AbstractExtractor | None = None,
+    method: AbstractTriangulation | None = None,
+    mesher: AbstractMesher | None = None,
+    laser: int = 0,
+    frames: bool = False,
+    progress: Progress = silent,
+) -> Project:
+    """Turn a recording into a measured 3D model, and say how it went.
+
+    A stage that is done with the same settings and inputs is skipped; one that was interrupted
+    goes on at its first missing part.
+
+    Args:
+        recording: The pictures; see `open_recording`.
+        rig: The calibrated rig that recorded them; see `load_rig`.
+        motion: How the camera moved.
+        out: The folder for everything that is made.
+        extractor: The way to find the stripe; gray gravity unless given.
+        method: The way from pixels to points; ray and sheet unless given.
+        mesher: The way to make a surface; the scan's own grid unless given.
+        laser: Number of the laser in the rig whose stripe is followed.
+        frames: Whether to write one cloud a frame for more than 500 frames, too.
+        progress: Told how far each stage is.
+
+    Returns:
+        The project, from which each value can be loaded.
+
+    Raises:
+        InputError: The recording is not of this rig, or the motion says nothing about its times.
+        FormatError: Nothing of the recording can be read.
+        DeviceError: The disk is full; what is finished is kept.
+    """
+    project = begin_scan(out, recording, rig, laser=laser)
+    extract_recording(
+        project, recording, rig, extractor or GrayGravity(), laser=laser, progress=progress
+    )
+    triangulate_stripes(project, rig, method or RaySheet(), progress=progress)
+    follow_motion(project, motion)
+    build_cloud(project, rig, frames=frames)
+    build_mesh(project, mesher or GridMesh())
+    draw_views(project, progress=progress)
+    write_report(project)
+    return project
+
+
+def begin_scan(
+    out: Path | str, recording: AbstractRecording, rig: Rig, *, laser: int = 0
+) -> Project:
+    """Make a project, or open the one that is there, and write down what it scans with what.
+
+    Raises:
+        InputError: The folder holds other things, or the recording is not of this rig.
+    """
+    check_recording(recording, rig, laser)
+    project = Project(Path(out))
+    project.check_writable()
+    project.save_scan(
+        {
+            "format": 1,
+            "versions": _versions(),
+            "started": datetime.now(UTC).isoformat(timespec="seconds"),
+            "recording": {
+                "path": str(recording.path),
+                "fingerprint": recording.fingerprint(),
+                "size": list(recording.size),
+                "is_timed": recording.is_timed,
+                "fields_per_picture": recording.fields_per_picture,
+            },
+            "rig": as_tables(rig),
+            "settings": describe(recording),
+        }
+    )
+    return project
+
+
+def load_scan_rig(project: Project) -> Rig:
+    """Give the rig that a project's recording was made with.
+
+    Raises:
+        MissingResult: The folder holds no scan.
+    """
+    return parse_rig(project.load_scan()["rig"], name=f"{project.root / 'scan.json'}: rig")
+
+
+def _versions() -> dict[str, Any]:
+    libraries = ("numpy", "scipy", "numba", "opencv-contrib-python-headless", "av", "pyarrow")
+    return {
+        "murkscan": version("murkscan"),
+        "python": platform.python_version(),
+        "platform": platform.platform(),
+        **{name: version(name) for name in libraries},
+    }

@@ -1,0 +1,48 @@
+"""The paper's triangulation: equation (4)."""
+
+import math
+from dataclasses import dataclass
+from typing import final
+
+import numpy as np
+
+from ..errors import InputError
+from ..optics import normalise
+from ..types.arrays import Pixels, Points
+from ..types.rig import Rig
+from .base import AbstractTriangulation
+
+_TURNED = 1e-6
+"""Sine of a sheet's turn about the optical axis from which equation (4) no longer holds."""
+
+
+@final
+@dataclass(frozen=True)
+class BaselineAngle(AbstractTriangulation):
+    """Equation (4): [X Y Z] = b / (f · cot θ − x) · [x y f].
+
+    For a sheet that contains one of the camera's two image axes. Lens distortion is removed first.
+
+    References:
+        The paper's equation (4), with the minus sign that its print has lost.
+    """
+
+    def locate(self, pixels: Pixels, rig: Rig, laser: int) -> Points:
+        """Give the point that each pixel sees; see `AbstractTriangulation.locate`.
+
+        Raises:
+            InputError: The sheet is turned about the optical axis, so that no b and θ describe it.
+        """
+        source = rig.lasers[laser]
+        along = "xy".index(source.axis)
+        if abs(source.sheet.normal[1 - along]) > _TURNED:
+            raise InputError(
+                f"Laser {laser} is turned about the optical axis, so equation (4) does not hold "
+                "for it; use --method ray-sheet."
+            )
+        baseline, angle = source.as_baseline_angle()
+        flat = normalise(rig.camera, pixels)
+        with np.errstate(divide="ignore"):
+            depth = baseline / (1 / math.tan(angle) - flat[:, along])
+        depth = np.where(np.isfinite(depth) & (depth > 0), depth, np.nan)
+        return np.concatenate([flat, np.ones((len(flat), 1))], axis=1) * depth[:, None]

@@ -1,0 +1,119 @@
+"""Rig files: what users write comes in, what calibrate writes leaves the rest alone."""
+
+import numpy as np
+import pytest
+
+from murkscan.errors import FormatError, InputError
+from murkscan.io.rig_toml import as_tables, load_rig, parse_rig, save_camera, save_laser, save_rig
+from murkscan.types.camera import Camera
+from murkscan.types.laser import Laser
+from murkscan.types.plane import Plane
+
+RIG = """# our first rig
+format = 1
+wavelength_nm = 650
+
+[camera]                        # the cheap one
+size = [640, 480]
+focal_length = [850.4, 850.4]   # px
+principal_point = [328, 239.5]
+
+[[laser]]
+kind = "baseline_angle"
+baseline_mm = 37.3
+angle_deg = 65.0
+axis = "x"
+
+[mount]                         # screwed on the frame
+translation_mm = [100.0, 0.0, -50.0]
+quaternion_wxyz = [1.0, 0.0, 0.0, 0.0]
+"""
+
+
+@pytest.fixture
+def file(tmp_path):
+    path = tmp_path / "rig.toml"
+    path.write_text(RIG)
+    return path
+
+
+def test_a_rig_of_the_contract_is_read(file):
+    rig = load_rig(file)
+    assert rig.camera.size == (640, 480)
+    assert rig.wavelength == pytest.approx(650e-9)
+    assert rig.lasers[0].as_baseline_angle() == pytest.approx((0.0373, np.radians(65)))
+    np.testing.assert_allclose(rig.vehicle_from_camera.translation, [0.1, 0, -0.05])
+
+
+def test_a_rig_there_and_back_is_the_same(file, tmp_path):
+    rig = load_rig(file)
+    save_rig(tmp_path / "copy.toml", rig)
+    copy = load_rig(tmp_path / "copy.toml")
+    assert as_tables(copy) == as_tables(rig)
+    assert as_tables(parse_rig(as_tables(rig), name="tables")) == as_tables(rig)
+
+
+def test_a_new_camera_leaves_the_rest_and_its_comments_alone(file):
+    camera = Camera((640, 480), (600.0, 601.0), (320.0, 240.0), np.array([0.1, 0, 0, 0, 0]))
+    save_camera(file, camera, wavelength=532e-9, record={"views": 20})
+    text = file.read_text()
+    for comment in ("# our first rig", "# the cheap one", "# screwed on the frame"):
+        assert comment in text
+    rig = load_rig(file)
+    assert rig.camera.focal_length == (600.0, 601.0)
+    assert rig.wavelength == pytest.approx(650e-9)
+    assert len(rig.lasers) == 1
+
+
+def test_a_camera_makes_a_rig_file_where_there_is_none(tmp_path):
+    path = tmp_path / "new" / "rig.toml"
+    camera = Camera((720, 576), (554.0, 554.8), (359.5, 287.5))
+    save_camera(path, camera, wavelength=532e-9, record={})
+    assert load_rig(path).lasers == ()
+    assert load_rig(path).wavelength == pytest.approx(532e-9)
+
+
+def test_a_laser_is_replaced_or_added_but_leaves_no_gap(file):
+    laser = Laser.from_sheet(Plane(np.array([0.0, 0.6, -0.8]), 0.1))
+    save_laser(file, laser, 1, record={})
+    save_laser(file, laser, 0, record={"views": 30})
+    assert [laser.axis for laser in load_rig(file).lasers] == ["y", "y"]
+    with pytest.raises(InputError, match="--laser 2"):
+        save_laser(file, laser, 3, record={})
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("850.4,", "nan,", "camera.focal_length.0"),
+        ("850.4,", "-850.4,", "camera.focal_length.0"),
+        ("[640, 480]", "[640]", "camera.size"),
+        ("axis =", "axes =", "laser.0.axes is unknown"),
+        ('"baseline_angle"', '"beam"', "laser.0.kind"),
+        ("format = 1", "format = 2", "format"),
+        ("format = 1", "", "format is missing"),
+        ("37.3", "0", "baseline"),
+        ("[mount]", "[mont]", "mont is unknown"),
+        ("[1.0, 0.0, 0.0, 0.0]", "[0, 0, 0, 0]", "quaternion"),
+        ("[camera]", "[camera", "not a TOML file"),
+    ],
+)
+def test_a_wrong_rig_names_the_file_and_the_key(file, old, new, says):
+    file.write_text(RIG.replace(old, new))
+    with pytest.raises(FormatError, match=says) as error:
+        load_rig(file)
+    assert str(file) in str(error.value)
+
+
+def test_a_missing_rig_is_named(tmp_path):
+    with pytest.raises(FormatError, match=r"no rig file .*nowhere\.toml"):
+        load_rig(tmp_path / "nowhere.toml")
+
+
+def test_a_camera_is_not_written_into_a_file_that_is_no_rig(tmp_path):
+    path = tmp_path / "notes.toml"
+    path.write_text('title = "not a rig"\n')
+    camera = Camera((720, 576), (554.0, 554.8), (359.5, 287.5))
+    with pytest.raises(FormatError, match="title"):
+        save_camera(path, camera, wavelength=532e-9, record={})
+    assert path.read_text() == 'title = "not a rig"\n'
