@@ -1,11 +1,15 @@
 """What every recording can do."""
 
 import abc
-from collections.abc import Callable, Iterator
+import hashlib
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from ..types.frame import Frame
+from .fields import FieldOrder
 
 
 @dataclass(frozen=True)
@@ -16,6 +20,8 @@ class Skip:
     """Number of the frame that is missing, or of the first of those that are."""
     reason: str
     """What is wrong, naming the file."""
+    count: int = 1
+    """How many frames are missing, as far as that is known."""
 
 
 def ignore_skip(skip: Skip) -> None:
@@ -29,12 +35,17 @@ class AbstractRecording(abc.ABC):
     """The folder or the file."""
     size: tuple[int, int]
     """Width and height of the full frame [px]."""
-    fields_per_picture: int
-    """2 where the recording is interlaced and each field is a frame, otherwise 1."""
+    order: FieldOrder
+    """Whether a picture is one frame or two fields, and which of them came first."""
     is_timed: bool
     """Whether frames have real times; otherwise a frame's time is the number of its picture."""
     num_frames: int | None
     """How many frames the recording claims, for a progress bar; None where it does not say."""
+
+    @property
+    def fields_per_picture(self) -> int:
+        """2 where the recording is interlaced and each field is a frame, otherwise 1."""
+        return 1 if self.order == "progressive" else 2
 
     @abc.abstractmethod
     def frames(
@@ -45,12 +56,35 @@ class AbstractRecording(abc.ABC):
         Args:
             start: Index of the first frame wanted.
             on_skip: Told of each frame, or tail, that cannot be read; its index stays unused.
+
+        Raises:
+            FormatError: A picture has another size than the first one.
         """
 
     @abc.abstractmethod
     def sample(self, count: int) -> list[Frame]:
-        """Read about `count` frames spread evenly over the recording, at least one."""
+        """Read about `count` frames spread evenly over the recording, at least one.
+
+        What cannot be read is left out without a word; where fields are frames, both kinds come.
+
+        Raises:
+            FormatError: Nothing can be read, or a picture has another size than the first one.
+        """
 
     @abc.abstractmethod
     def fingerprint(self) -> str:
         """Give a text that changes when the recording's files change."""
+
+
+def spread_evenly(total: int, count: int) -> list[int]:
+    """Give at most `count` numbers spread over 0 … total - 1, both ends among them."""
+    return sorted({round(float(x)) for x in np.linspace(0, total - 1, max(count, 1))})
+
+
+def fingerprint_files(files: Sequence[Path]) -> str:
+    """Give a text that changes when a name, a size or a date of the files does."""
+    digest = hashlib.sha256()
+    for file in files:
+        state = file.stat()
+        digest.update(f"{file.name}\0{state.st_size}\0{state.st_mtime_ns}\n".encode())
+    return digest.hexdigest()

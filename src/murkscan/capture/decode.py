@@ -1,0 +1,171 @@
+"""Pictures out of a video file, with a word about those that cannot be decoded."""
+
+import heapq
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import av
+import numpy as np
+
+from ..errors import FormatError
+from ..types.arrays import Image
+from .colour import grey_from_colour, is_green
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """A picture that could be decoded."""
+
+    number: int
+    """Its number in the recording, counted with those that are lost."""
+    decoded: Any
+    """What PyAV decoded."""
+
+
+@dataclass(frozen=True)
+class Loss:
+    """Pictures that could not be decoded."""
+
+    first: int
+    """Number of the first of them in the recording."""
+    count: int
+    """How many they are."""
+    is_cut: bool = False
+    """Whether they are missing at the end, where the file promises them."""
+
+
+def open_video(path: Path) -> Any:
+    """Open a video file as PyAV's container; close it after use.
+
+    Raises:
+        FormatError: FFmpeg does not know it, or it holds no moving pictures.
+    """
+    try:
+        container = av.open(f"file:{path}")  # Without "file:" a colon in the name means a protocol.
+    except (av.error.FFmpegError, OSError) as error:
+        raise FormatError(
+            f"{path} cannot be read as a video ({error.strerror}). If it was cut off while it was "
+            "recorded, repair it with a video tool, or record into .mkv, which bears a cut."
+        ) from error
+    kind = container.format.name
+    if not container.streams.video or kind == "tty" or kind.startswith("image"):
+        container.close()
+        raise FormatError(f"{path} holds no video; give a video file or a folder of pictures.")
+    container.streams.video[0].thread_type = "AUTO"
+    return container
+
+
+def decode_pictures(container: Any) -> Iterator[Picture | Loss]:
+    """Decode a container from its present place; numbers count from 0 there.
+
+    A picture that the decoder gives up, or marks as patched up from others, is a loss. Lost
+    pictures keep their numbers: those of the packets that were fed and never came out.
+    """
+    fed = _Fed()
+    number, lost, damaged = 0, 0, True
+    for decoded in _decode_packets(container, fed):
+        if decoded is None:
+            damaged = True
+            continue
+        missing = fed.forget_until(decoded.pts)
+        # Without damage an odd packet is no lost picture: two fields may come in two packets.
+        lost += missing if damaged else 0
+        if decoded.is_corrupt:
+            lost, damaged = lost + 1, True
+            continue
+        if lost:
+            yield Loss(number, lost)
+        yield Picture(number + lost, decoded)
+        number, lost, damaged = number + lost + 1, 0, False
+    promised = container.streams.video[0].frames - fed.count
+    lost += len(fed.times) if damaged or promised > 0 else 0
+    if lost:
+        yield Loss(number, lost)
+    if promised > 0:
+        yield Loss(number + lost, promised, is_cut=True)
+
+
+class _Fed:
+    """The packets that the decoder was fed."""
+
+    def __init__(self) -> None:
+        self.count = 0
+        self.times: list[int] = []
+        """A heap: the times of those whose pictures have not come out."""
+
+    def add(self, packet: Any) -> None:
+        """Note a packet; the empty one at the end is none."""
+        self.count += packet.dts is not None or packet.size > 0
+        if packet.pts is not None:
+            heapq.heappush(self.times, packet.pts)
+
+    def forget_until(self, pts: int | None) -> int:
+        """Forget a picture that came out, and all before it; count those before it.
+
+        Pictures come out in order of time, so what is earlier has been given up by the decoder.
+        """
+        missing = 0
+        while pts is not None and self.times and self.times[0] <= pts:
+            missing += heapq.heappop(self.times) < pts
+        return missing
+
+
+def _decode_packets(container: Any, fed: _Fed) -> Iterator[Any]:
+    """Feed packets and give what comes out, None for damage."""
+    packets = container.demux(container.streams.video[0])
+    while True:
+        try:
+            packet = next(packets, None)
+        except av.error.FFmpegError:
+            yield None
+            return
+        if packet is None:
+            return
+        fed.add(packet)
+        try:
+            yield from packet.decode()
+        except av.error.FFmpegError:
+            yield None
+
+
+def picture_time(decoded: Any) -> float:
+    """Give the container's time of a picture [s]; NaN where it has none."""
+    return math.nan if decoded.pts is None else float(decoded.pts * decoded.time_base)
+
+
+def grey_from_video(decoded: Any, wavelength: float) -> Image:
+    """Give a decoded picture as grey levels of 8 bit, or of up to 16 in 16.
+
+    YUV with a green laser gives the Y plane as it is: chroma has half the resolution, and
+    stretching a limited range would only add rounding.
+
+    Args:
+        decoded: What PyAV decoded.
+        wavelength: Wavelength of the laser [m].
+    """
+    form = decoded.format
+    luma = not (form.is_rgb or form.is_bayer or form.has_palette)
+    if luma and (is_green(wavelength) or len(form.components) < 3):
+        return _luma(decoded)
+    # A Bayer format counts the bits of its pattern of four in three odd parts.
+    deep = form.bits_per_pixel > 8 if form.is_bayer else form.components[0].bits > 8
+    return grey_from_colour(decoded.to_ndarray(format="rgb48le" if deep else "rgb24"), wavelength)
+
+
+def _luma(decoded: Any) -> Image:
+    """Give the Y plane, unpacked where it is not a plane of its own; every value is kept."""
+    form = decoded.format
+    bits = form.components[0].bits
+    if form.is_big_endian:
+        decoded = decoded.reformat(format=form.name[:-2] + "le")
+    if bits < 8 or form.name.startswith("ya"):
+        decoded = decoded.reformat(format="gray" if bits <= 8 else "gray16le")
+    elif form.name.startswith("p") or any(part.plane == 0 for part in form.components[1:]):
+        # P010 and its like keep their bits in the upper part of a word; this shifts them down.
+        decoded = decoded.reformat(format="yuv444p" if bits == 8 else f"yuv444p{bits}le")
+    plane = decoded.planes[0]
+    values = np.frombuffer(plane, np.uint8 if bits <= 8 else np.uint16)
+    return values.reshape(plane.height, -1)[:, : plane.width].copy()

@@ -1,0 +1,151 @@
+"""A recording kept as a folder of pictures."""
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from typing import final
+
+from ..errors import FormatError
+from ..io.images import read_image
+from ..types.arrays import Image
+from ..types.frame import Frame
+from .base import AbstractRecording, Skip, fingerprint_files, ignore_skip, spread_evenly
+from .colour import grey_from_colour
+from .fields import FieldOrder, split_fields
+
+_SUFFIXES = (
+    *(".bmp", ".dib", ".jp2", ".jpe", ".jpeg", ".jpg", ".pbm", ".pgm", ".png", ".pnm", ".ppm"),
+    *(".tif", ".tiff", ".webp"),
+)
+TIMES = "times.csv"
+"""Name of the file that may tell the pictures' times."""
+
+
+def is_picture(path: Path) -> bool:
+    """Tell by its name whether a file is a picture; hidden ones are not meant."""
+    return path.suffix.lower() in _SUFFIXES and not path.name.startswith(".")
+
+
+def natural_key(name: str) -> tuple[list[tuple[int, str]], str]:
+    """Sort by this for the order that people expect: frame2 before frame10."""
+    parts = re.split(r"([0-9]+)", name.casefold())
+    return [(int(part), "") if i % 2 else (0, part) for i, part in enumerate(parts)], name
+
+
+def list_pictures(path: Path) -> tuple[str, ...]:
+    """List the names of a folder's pictures in natural order; other files are passed over.
+
+    Raises:
+        FormatError: There is none.
+    """
+    files = [file for file in path.iterdir() if is_picture(file) and file.is_file()]
+    if not files:
+        raise FormatError(
+            f"The folder {path} holds no pictures ({', '.join(_SUFFIXES)}). Give the "
+            "folder they lie in, or a video file itself."
+        )
+    return tuple(sorted((file.name for file in files), key=natural_key))
+
+
+@final
+@dataclass(frozen=True)
+class ImageFolder(AbstractRecording):
+    """A folder of pictures in natural order. `open_recording` makes it."""
+
+    path: Path
+    size: tuple[int, int]
+    order: FieldOrder
+    is_timed: bool
+    num_frames: int | None
+    files: tuple[str, ...]
+    """Names of the pictures."""
+    times: tuple[float, ...]
+    """Time of each picture [s], or its number where it has none."""
+    wavelength: float
+    """Wavelength of the laser, for which colours are weighted [m]."""
+
+    def frames(
+        self, start: int = 0, *, on_skip: Callable[[Skip], None] = ignore_skip
+    ) -> Iterator[Frame]:
+        """Read the frames in order, from the one with index `start`; see the base."""
+        each = self.fields_per_picture
+        for picture in range(start // each, len(self.files)):
+            first = max(picture * each, start)
+            try:
+                image = read_grey(self.path / self.files[picture], self.wavelength)
+            except FormatError as error:
+                on_skip(Skip(first, str(error), (picture + 1) * each - first))
+                continue
+            yield from (frame for frame in self._split(image, picture) if frame.index >= start)
+
+    def sample(self, count: int) -> list[Frame]:
+        """Read about `count` frames spread evenly over the recording; see the base."""
+        frames: list[Frame] = []
+        for picture in spread_evenly(len(self.files), count):
+            try:
+                image = read_grey(self.path / self.files[picture], self.wavelength)
+            except FormatError:
+                continue
+            fields = self._split(image, picture)
+            frames.append(fields[len(frames) % len(fields)])
+        frames = frames or list(islice(self.frames(), count))
+        if not frames:
+            raise FormatError(f"None of the {len(self.files)} pictures in {self.path} can be read.")
+        return frames
+
+    def fingerprint(self) -> str:
+        """Give a text that changes when a name, a size or a date of the files does."""
+        names = [*self.files, *([TIMES] if (self.path / TIMES).exists() else [])]
+        return fingerprint_files([self.path / name for name in names])
+
+    def _split(self, image: Image, picture: int) -> list[Frame]:
+        height, width = image.shape
+        if (width, height) != self.size:
+            raise FormatError(
+                f"{self.path / self.files[picture]} is {width} x {height} px, but the recording "
+                f"is {self.size[0]} x {self.size[1]} px; remove it or sort the recordings apart."
+            )
+        return split_fields(
+            image,
+            picture=picture,
+            time=self.times[picture],
+            period=self._period(picture),
+            order=self.order,
+        )
+
+    def _period(self, picture: int) -> float:
+        """Give the time to the next picture; for the last one, the time since the one before."""
+        if len(self.times) < 2:
+            return 1.0
+        before = min(picture, len(self.times) - 2)
+        return self.times[before + 1] - self.times[before]
+
+
+def read_grey(path: Path, wavelength: float) -> Image:
+    """Read a picture as grey levels, 8 or 16 bit; colours are weighted for the laser's.
+
+    Raises:
+        FormatError: The file is no picture, or a broken one.
+    """
+    try:
+        image = read_image(path)
+    except OSError as error:
+        raise FormatError(f"{path} cannot be read: {error.strerror or error}.") from error
+    return image if image.ndim == 2 else grey_from_colour(image, wavelength)
+
+
+def read_runs(path: Path, files: Sequence[str], wavelength: float) -> Iterator[list[Image]]:
+    """Read some runs of pictures that follow one another, spread over the folder."""
+    length = 5
+    for start in spread_evenly(max(len(files) - length + 1, 1), 5):
+        run: list[Image] = []
+        for name in files[start : start + length]:
+            try:
+                image = read_grey(path / name, wavelength)
+            except FormatError:
+                continue
+            if not run or image.shape == run[0].shape:
+                run.append(image)
+        yield run
