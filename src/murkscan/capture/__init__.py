@@ -3,8 +3,14 @@
 from .base import AbstractRecording as AbstractRecording
 from .base import Skip as Skip
 from .base import ignore_skip as ignore_skip
+from .camera import camera_images as camera_images
+from .camera import is_camera as is_camera
 from .colour import grey_from_colour as grey_from_colour
 from .folder import ImageFolder as ImageFolder
+from .growing import Recorded as Recorded
 from .open import Fields as Fields
 from .open import open_recording as open_recording
+from .record import record_images as record_images
+from .stream import copy_stream as copy_stream
+from .stream import is_stream as is_stream
 from .video import Video as Video

@@ -1,0 +1,45 @@
+"""Pictures from a camera at this machine."""
+
+import re
+import time
+from collections.abc import Iterator
+
+import cv2
+import numpy as np
+
+from ..errors import DeviceError
+
+
+def is_camera(source: str) -> bool:
+    """Tell whether a source is a local camera: its number, or /dev/video and its number."""
+    return re.fullmatch(r"[0-9]+|/dev/video[0-9]+", source) is not None
+
+
+def camera_images(source: str) -> Iterator[tuple[np.ndarray, float]]:
+    """Take pictures from a camera as they arrive.
+
+    Args:
+        source: Number of the camera, or its device file.
+
+    Yields:
+        Each picture (h w, or h w 3 red, green, blue) and the time of its arrival [s], from any
+        beginning.
+
+    Raises:
+        DeviceError: There is no such camera, it is in use, or it stops.
+    """
+    camera = cv2.VideoCapture(int(source) if source.isdigit() else source)
+    try:
+        if not camera.isOpened():
+            raise DeviceError(
+                f"Camera {source} cannot be opened; check that it is plugged in, that no other "
+                "program uses it, and that you may use video devices."
+            )
+        while True:
+            arrived, image = camera.read()
+            now = time.monotonic()
+            if not arrived:
+                raise DeviceError(f"Camera {source} stopped sending; check its cable.")
+            yield (image if image.ndim == 2 else image[:, :, ::-1]), now
+    finally:
+        camera.release()

@@ -1,0 +1,85 @@
+"""murkscan capture: record a stream or a camera."""
+
+from collections.abc import Generator, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
+from cyclopts.types import PositiveFloat
+
+if TYPE_CHECKING:
+    from ..capture import Recorded
+
+
+def capture(
+    source: str,
+    out: Path,
+    *,
+    seconds: PositiveFloat | None = None,
+    timeout: Annotated[PositiveFloat, Parameter(name="--timeout-s")] = 10.0,
+) -> None:
+    """Record a stream or a camera into a file, as it comes.
+
+    A network stream is copied with its times, without a new encoding; a camera at this machine is
+    recorded without loss. Ctrl-C ends the recording and leaves a file that plays.
+
+    Parameters
+    ----------
+    source
+        An address (udp://, rtp://, rtsp:// ...), an SDP file, or a camera: its number, or
+        /dev/video and its number.
+    out
+        The file to write, ending in .mkv; nothing may stand there.
+    seconds
+        Length of the recording [s]; without it, until Ctrl-C or the end of the stream.
+    timeout
+        Longest wait for the stream and for its next picture [s].
+    """
+    from contextlib import closing
+
+    from ..capture import Recorded
+
+    last = Recorded(0, 0.0, 0)
+    try:
+        with closing(_start(source, out, seconds, timeout)) as recording:
+            for recorded in _show(recording):
+                last = recorded
+    except KeyboardInterrupt:
+        # Without --seconds this is how a recording ends, and no interruption.
+        if seconds is not None:
+            raise
+    finally:
+        if last.frames:
+            print(f"{out}: {_describe(last)}")
+
+
+def _start(
+    source: str, out: Path, seconds: float | None, timeout: float
+) -> Generator["Recorded", None, None]:
+    """Choose how to record a source."""
+    from ..capture import camera_images, copy_stream, is_camera, is_stream, record_images
+    from ..errors import InputError
+
+    if is_stream(source):
+        return copy_stream(source, out, seconds=seconds, timeout=timeout)
+    if is_camera(source):
+        return record_images(camera_images(source), out, seconds=seconds)
+    raise InputError(
+        f"{source} is no stream and no camera; give an address such as udp://0.0.0.0:5600, an SDP "
+        "file, or a camera's number. A video that is a file already can be scanned as it is."
+    )
+
+
+def _show(recording: Iterator["Recorded"]) -> Iterator["Recorded"]:
+    """Keep a line on the terminal that tells how far the recording is."""
+    from rich.console import Console
+
+    with Console(stderr=True).status("waiting for the first picture ...") as line:
+        for recorded in recording:
+            line.update(f"recording: {_describe(recorded)}; Ctrl-C ends it")
+            yield recorded
+
+
+def _describe(recorded: "Recorded") -> str:
+    rate = recorded.bytes * 8e-6 / recorded.seconds if recorded.seconds else 0.0
+    return f"{recorded.frames} frames, {recorded.seconds:.1f} s, {rate:.1f} Mbit/s"
