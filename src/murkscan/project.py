@@ -17,7 +17,7 @@ from .io.mesh_files import load_mesh, save_mesh
 from .io.parquet import load_profile, load_stripe, save_profile, save_stripe
 from .io.ply import load_cloud, save_cloud
 from .io.poses import load_poses, save_poses
-from .types.clock import Clock
+from .types.frame_times import FrameTimes
 from .types.cloud import PointCloud
 from .types.mesh import Mesh
 from .types.profile import Profile

@@ -30,22 +30,25 @@ def distort_points(flat: np.ndarray, distortion: np.ndarray) -> np.ndarray:
 
 
 @njit(cache=True, nogil=True)
+def straighten(bent_x: float, bent_y: float, distortion: np.ndarray) -> tuple[float, float]:
+    """Undo `distort_points` for one point; NaN where Newton's method finds no answer."""
+    x, y, step = bent_x, bent_y, np.inf
+    for _ in range(20):
+        now_x, now_y, xx, xy, yy = _bend(x, y, distortion)
+        off_x, off_y = bent_x - now_x, bent_y - now_y
+        scale = 1.0 / (xx * yy - xy * xy)
+        dx, dy = scale * (yy * off_x - xy * off_y), scale * (xx * off_y - xy * off_x)
+        x, y = x + dx, y + dy
+        step = abs(dx) + abs(dy)
+        if step < 1e-13:
+            break
+    return (x, y) if step < 1e-9 else (np.nan, np.nan)
+
+
+@njit(cache=True, nogil=True)
 def undistort_points(bent: np.ndarray, distortion: np.ndarray) -> np.ndarray:
-    """Straighten normalised points (n 2); NaN where Newton's method finds no answer."""
+    """Straighten normalised points (n 2); NaN where there is no answer."""
     flat = np.empty_like(bent)
     for i in range(len(bent)):
-        x, y = bent[i, 0], bent[i, 1]
-        step = np.inf
-        for _ in range(20):
-            now_x, now_y, xx, xy, yy = _bend(x, y, distortion)
-            off_x, off_y = bent[i, 0] - now_x, bent[i, 1] - now_y
-            scale = 1.0 / (xx * yy - xy * xy)
-            dx, dy = scale * (yy * off_x - xy * off_y), scale * (xx * off_y - xy * off_x)
-            x, y = x + dx, y + dy
-            step = abs(dx) + abs(dy)
-            if step < 1e-13:
-                break
-        found = step < 1e-9
-        flat[i, 0] = x if found else np.nan
-        flat[i, 1] = y if found else np.nan
+        flat[i, 0], flat[i, 1] = straighten(bent[i, 0], bent[i, 1], distortion)
     return flat

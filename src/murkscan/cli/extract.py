@@ -44,8 +44,10 @@ def extract(
 
     of_recording = load_rig(rig)
     pictures = reading.open(recording, of_recording)
-    project = begin_scan(out, pictures, of_recording, laser=laser)
     finder = make_extractor(extractor, settings)
+    project = begin_scan(
+        out, pictures, of_recording, laser=laser, settings={"extractor": finder}
+    )
     with progress_bars() as progress:
         result = extract_recording(
             project, pictures, of_recording, finder, laser=laser, progress=progress

@@ -35,15 +35,15 @@ def follow_motion(project: Project, motion: AbstractMotion) -> dict[str, Any]:
             "times.csv in the folder, or say with --step-mm how far the camera moves from picture "
             "to picture."
         )
-    clock = project.load_clock()
-    pictures = clock.frame.astype(float) / recording["fields_per_picture"]
-    trajectory = motion.follow(clock.time, pictures)
+    times = project.load_frame_times()
+    pictures = times.frame.astype(float) / recording["fields_per_picture"]
+    trajectory = motion.follow(times.time, pictures)
     stage.begin()
     project.save_trajectory(trajectory)
     steps = np.linalg.norm(np.diff(trajectory.positions, axis=0), axis=1)
     result = {
-        "poses": len(clock),
-        "duration_s": float(np.ptp(clock.time)),
+        "poses": len(times),
+        "duration_s": float(np.ptp(times.time)),
         "length_m": float(steps.sum()),
     }
     stage.finish(result)

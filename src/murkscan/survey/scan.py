@@ -1,6 +1,7 @@
 """A scan from the recording to the report: the stages in order."""
 
 import platform
+from collections.abc import Mapping
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
@@ -63,23 +64,36 @@ def scan(
         FormatError: Nothing of the recording can be read.
         DeviceError: The disk is full; what is finished is kept.
     """
-    project = begin_scan(out, recording, rig, laser=laser)
-    extract_recording(
-        project, recording, rig, extractor or GrayGravity(), laser=laser, progress=progress
-    )
-    triangulate_stripes(project, rig, method or RaySheet(), progress=progress)
+    extractor, method = extractor or GrayGravity(), method or RaySheet()
+    mesher = mesher or GridMesh()
+    settings = {"extractor": extractor, "method": method, "motion": motion, "mesher": mesher}
+    project = begin_scan(out, recording, rig, laser=laser, settings=settings)
+    extract_recording(project, recording, rig, extractor, laser=laser, progress=progress)
+    triangulate_stripes(project, rig, method, progress=progress)
     follow_motion(project, motion)
     build_cloud(project, rig, frames=frames)
-    build_mesh(project, mesher or GridMesh())
+    build_mesh(project, mesher)
     draw_views(project, progress=progress)
     write_report(project)
     return project
 
 
 def begin_scan(
-    out: Path | str, recording: AbstractRecording, rig: Rig, *, laser: int = 0
+    out: Path | str,
+    recording: AbstractRecording,
+    rig: Rig,
+    *,
+    laser: int,
+    settings: Mapping[str, object],
 ) -> Project:
     """Make a project, or open the one that is there, and write down what it scans with what.
+
+    Args:
+        out: The folder.
+        recording: The pictures.
+        rig: The rig that recorded them.
+        laser: Number of the laser whose stripe is followed.
+        settings: The Choice of each kind that was made.
 
     Raises:
         InputError: The folder holds other things, or the recording is not of this rig.
@@ -100,7 +114,10 @@ def begin_scan(
                 "fields_per_picture": recording.fields_per_picture,
             },
             "rig": as_tables(rig),
-            "settings": describe(recording),
+            "settings": {
+                "laser": laser,
+                **{name: describe(choice) for name, choice in settings.items()},
+            },
         }
     )
     return project

@@ -3,15 +3,15 @@
 from typing import Any
 
 from ..project import Project
-from ..view import VIEWS, draw_view
+from ..view import draw_pictures
 from .progress import Progress, silent
 
 
 def draw_views(project: Project, *, progress: Progress = silent) -> dict[str, Any]:
-    """Run the view stage: the isometric and six standard views, plain and coloured by depth.
+    """Run the view stage: the isometric and six standard views, and two coloured by depth.
 
     Returns:
-        The names of the pictures; none for a scan without a surface.
+        The names of the pictures, in the order to show them; none for a scan without a surface.
 
     Raises:
         MissingResult: The mesh stage has not been finished.
@@ -24,12 +24,11 @@ def draw_views(project: Project, *, progress: Progress = silent) -> dict[str, An
     stage.begin()
     names: list[str] = []
     if source.counts()["faces"]:
-        mesh = project.load_mesh()
-        for done, view in enumerate(VIEWS):
-            for colours, suffix in (("plain", ""), ("depth", "_depth")):
-                name = f"{view}{suffix}.png"
-                project.save_picture("view", name, draw_view(mesh, view, colours=colours))
-                names.append(name)
-            progress("view", done + 1, len(VIEWS))
-    stage.finish({"pictures": names})
-    return {"pictures": names}
+        pictures = draw_pictures(project.load_mesh(), project.load_trajectory())
+        for name, picture in pictures.items():
+            write_image(stage.folder / f"{name}.png", picture)
+            names.append(name)
+            progress("view", len(names), len(pictures))
+    result = {"pictures": names}
+    stage.finish(result)
+    return result

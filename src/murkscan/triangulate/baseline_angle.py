@@ -4,10 +4,8 @@ import math
 from dataclasses import dataclass
 from typing import final
 
-import numpy as np
-
+from .._kernels.equation4 import locate_points
 from ..errors import InputError
-from ..optics import normalise
 from ..types.arrays import Pixels, Points
 from ..types.rig import Rig
 from .base import AbstractTriangulation
@@ -41,8 +39,12 @@ class BaselineAngle(AbstractTriangulation):
                 "for it; use --method ray-sheet."
             )
         baseline, angle = source.as_baseline_angle()
-        flat = normalise(rig.camera, pixels)
-        with np.errstate(divide="ignore"):
-            depth = baseline / (1 / math.tan(angle) - flat[:, along])
-        depth = np.where(np.isfinite(depth) & (depth > 0), depth, np.nan)
-        return np.concatenate([flat, np.ones((len(flat), 1))], axis=1) * depth[:, None]
+        return locate_points(
+            pixels,
+            rig.camera.focal_length,
+            rig.camera.principal_point,
+            rig.camera.distortion,
+            along,
+            baseline,
+            1 / math.tan(angle),
+        )

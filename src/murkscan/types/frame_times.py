@@ -6,7 +6,7 @@ from .arrays import FrameNumbers, Scalars
 
 
 @dataclass(frozen=True, eq=False)
-class Clock:
+class FrameTimes:
     """The frames that were read, with or without a stripe; one a row, in order."""
 
     frame: FrameNumbers

@@ -1,0 +1,95 @@
+"""The photos of a calibration with what was found drawn over them."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from ..calibrate.board import Chessboard, Margin
+from ..calibrate.camera import CameraCalibration
+from ..calibrate.drawing import draw_board, draw_stripe, project_outline
+from ..calibrate.sheet import LaserCalibration, StripeOnBoard
+from ..calibrate.view import BoardView
+from ..io.images import write_image
+from ..types.camera import Camera
+from .board_photos import BoardPhotos
+from .progress import Progress
+
+_SHEET_TOLERANCE = 2e-3
+"""Distance from the sheet at which a stripe point is drawn red [m], where the RMS is lower."""
+
+
+def draw_boards(
+    photos: BoardPhotos,
+    views: Sequence[BoardView],
+    board: Chessboard,
+    calibration: CameraCalibration | None,
+    folder: Path,
+    progress: Progress,
+) -> None:
+    """Draw the corners of every photo, with residuals where there is a calibration."""
+    _clear(folder)
+    none = np.zeros((0, 2))
+    used = {} if calibration is None else _number(calibration.views)
+    left_out = set() if calibration is None else {view.name for view in calibration.left_out}
+    for number, (photo, view) in enumerate(zip(photos, views, strict=True)):
+        residuals, note = none, f"{view.name}: no {board} board found"
+        if view.is_found:
+            note = f"{view.name}: {board} board"
+        if view.name in left_out:
+            note += ", LEFT OUT: fits far worse than the others"
+        if calibration is not None and view.name in used:
+            residuals = calibration.residuals[used[view.name]]
+            note += f", RMS {calibration.view_rms[used[view.name]]:.2f} px"
+        picture = draw_board(photo.image, view, board, residuals, note)
+        write_image(folder / f"{Path(view.name).stem}.jpg", picture)
+        progress("draw", number + 1, len(views))
+
+
+def draw_stripes(
+    stripes: Sequence[StripeOnBoard],
+    calibration: LaserCalibration | None,
+    photos: BoardPhotos,
+    board: Chessboard,
+    margin: Margin,
+    camera: Camera,
+    folder: Path,
+    progress: Progress,
+) -> None:
+    """Draw the stripe points of every photo with a board, coloured by residual."""
+    _clear(folder)
+    found = {stripe.name: stripe for stripe in stripes}
+    used = {} if calibration is None else _number(calibration.stripes)
+    done = 0
+    for photo in photos:
+        if photo.name not in found:
+            continue
+        stripe = found[photo.name]
+        note = f"{stripe.name}: {len(stripe.pixels)} points" if len(stripe.pixels) else (
+            f"{stripe.name}: no stripe on the board's paper"
+        )
+        residuals = np.zeros(len(stripe.pixels))
+        if calibration is not None and stripe.name in used:
+            residuals = calibration.residuals[used[stripe.name]]
+            note += f", RMS {calibration.view_rms[used[stripe.name]] * 1e3:.2f} mm"
+        picture = draw_stripe(
+            photo.image,
+            stripe.pixels,
+            residuals,
+            note,
+            outline=project_outline(board, margin, camera, stripe.camera_from_board),
+            tolerance=_SHEET_TOLERANCE,
+        )
+        write_image(folder / f"{Path(stripe.name).stem}.jpg", picture)
+        done += 1
+        progress("draw", done, len(stripes))
+
+
+def _number(items: Sequence[BoardView] | Sequence[StripeOnBoard]) -> dict[str, int]:
+    return {item.name: number for number, item in enumerate(items)}
+
+
+def _clear(folder: Path) -> None:
+    """Remove what an earlier calibration drew: it would be taken for this one's."""
+    for file in folder.glob("*.jpg"):
+        file.unlink()
