@@ -1,0 +1,5 @@
+"""`python -m murkscan`: the command line."""
+
+from .cli import main
+
+main()

@@ -1,0 +1,109 @@
+"""Every command in order on one small project, and what a wrong one says."""
+
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+from murkscan.cli.main import run
+
+COMMANDS = [
+    "demo", "calibrate", "capture", "scan", "extract", "triangulate", "motion", "cloud", "mesh",
+    "view", "report",
+]  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def short(hull, tmp_path_factory):
+    """Give the first frames that show the hull: a recording of a second."""
+    folder = tmp_path_factory.mktemp("short")
+    (folder / "frames").mkdir()
+    for i in range(40, 60):
+        shutil.copy(hull / "frames" / f"{i:06d}.png", folder / "frames")
+    shutil.copy(hull / "rig.toml", folder)
+    return folder
+
+
+def _arguments(folder, *more):
+    return [str(folder / "frames"), "--rig", str(folder / "rig.toml"), *more]
+
+
+def test_each_stage_alone_makes_what_scan_makes(short, tmp_path, capsys):
+    whole, alone = tmp_path / "whole", tmp_path / "alone"
+    step = ("--step-mm", "7.7")
+    assert run(["scan", *_arguments(short, *step, "--out", str(whole))]) == 0
+    assert run(["extract", *_arguments(short, "--out", str(alone))]) == 0
+    assert run(["triangulate", str(alone)]) == 0
+    assert run(["motion", str(alone), *step]) == 0
+    for stage in ("cloud", "mesh", "view", "report"):
+        assert run([stage, str(alone)]) == 0
+    for name in ("cloud/cloud.ply", "mesh/mesh.ply", "view/isometric.png"):
+        assert (alone / name).read_bytes() == (whole / name).read_bytes()
+    said = capsys.readouterr().out
+    assert "20 read, 0 skipped" in said
+    assert "mesh.glb" in said
+
+
+def test_the_paper_as_printed_runs_too(short, tmp_path):
+    paper = ("--extractor", "threshold-skeleton", "--method", "equation-4", "--step-mm", "7.7")
+    assert run(["scan", *_arguments(short, *paper, "--out", str(tmp_path / "out"))]) == 0
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_has_help(command, capsys):
+    assert run([command, "--help"]) == 0
+    assert "Usage: murkscan" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("more", "says"),
+    [
+        ((), "exactly one of --speed-mm-s, --step-mm and --poses"),
+        (("--step-mm", "1", "--speed-mm-s", "1"), "exactly one of"),
+        (("--step-mm", "0"), "other than 0"),
+        (("--speed-mm-s", "0"), "other than 0"),
+        (("--speed-mm-s", "100"), "--fps"),
+        (("--poses", "nowhere.csv"), "nowhere.csv"),
+        (("--step-mm", "1", "--laser", "3"), "no laser 3"),
+        (("--step-mm", "1", "--set", "colour=3"), "is no setting of GrayGravity"),
+        (("--step-mm", "1", "--extractor", "magic"), "magic"),
+        (("--step-mm", "1", "--start-time", "noon", "--poses", "x"), "exactly one of"),
+    ],
+)
+def test_a_wrong_scan_is_one_sentence_and_status_2(short, tmp_path, capfd, more, says):
+    assert run(["scan", *_arguments(short, *more, "--out", str(tmp_path / "out"))]) == 2
+    said = capfd.readouterr().err
+    assert says in said
+    assert "Traceback" not in said
+    assert said.splitlines()[-1].startswith("murkscan: ")
+
+
+def test_a_stage_without_the_one_before_names_it(short, tmp_path, capfd):
+    out = tmp_path / "out"
+    assert run(["triangulate", str(out)]) == 2
+    assert "holds no scan" in capfd.readouterr().err
+    assert run(["extract", *_arguments(short, "--out", str(out))]) == 0
+    assert run(["cloud", str(out)]) == 2
+    assert "`murkscan triangulate`" in capfd.readouterr().err
+
+
+def test_a_missing_rig_and_an_empty_folder_are_named(short, tmp_path, capfd):
+    frames, out = str(short / "frames"), str(tmp_path / "out")
+    rest = ["--step-mm", "1", "--out", out]
+    assert run(["scan", frames, "--rig", str(tmp_path / "no.toml"), *rest]) == 2
+    assert "no.toml" in capfd.readouterr().err
+    (tmp_path / "empty").mkdir()
+    rig = str(short / "rig.toml")
+    assert run(["scan", str(tmp_path / "empty"), "--rig", rig, *rest]) == 2
+    assert "empty" in capfd.readouterr().err
+
+
+def test_help_loads_nothing_heavy():
+    """What makes --help slow is imports, so these are counted; its time is a benchmark."""
+    code = (
+        "import sys; from murkscan.cli.main import run; run(['scan', '--help']);"
+        "print([m for m in ('numpy', 'numba', 'cv2', 'av', 'pyarrow') if m in sys.modules])"
+    )
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert said.stdout.splitlines()[-1] == "[]"

@@ -1,0 +1,194 @@
+"""A scan from the recording to the report: what it makes, skips, and takes up again."""
+
+import os
+import shutil
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+import murkscan as ms
+from murkscan.simulate import HULL_SPEED
+from murkscan.survey.demo import Errors, run_demo
+
+MOTION = ms.ConstantSpeed(HULL_SPEED, "y")
+MADE = [
+    "scan.json",
+    "extract/stripes/000000.parquet",
+    "extract/stripes/000002.parquet",
+    "triangulate/profiles/000001.parquet",
+    "motion/trajectory.csv",
+    "cloud/cloud.ply",
+    "cloud/frames.mlp",
+    "mesh/mesh.ply",
+    "mesh/mesh.stl",
+    "mesh/mesh.glb",
+    "view/isometric.png",
+    "view/front.png",
+    "view/index.html",
+    "report/index.html",
+    "report/report.json",
+]
+
+
+def _open(hull):
+    rig = ms.load_rig(hull / "rig.toml")
+    return ms.open_recording(hull / "frames", wavelength=rig.wavelength), rig
+
+
+@pytest.fixture(scope="module")
+def scanned(hull, tmp_path_factory):
+    recording, rig = _open(hull)
+    return ms.scan(recording, rig, MOTION, out=tmp_path_factory.mktemp("scans") / "out")
+
+
+@pytest.mark.parametrize("name", MADE)
+def test_a_scan_makes_what_the_contract_says(scanned, name):
+    assert (scanned.root / name).stat().st_size > 0
+
+
+def test_about_twelve_overlays_are_kept(scanned):
+    assert 8 <= len(list((scanned.root / "extract/overlay").glob("*.png"))) <= 12
+
+
+def test_every_frame_has_a_pose_and_every_point_a_profile(scanned):
+    assert len(scanned.load_trajectory().times) == 130
+    dropped = scanned.finished("triangulate").counts()["dropped"]
+    assert len(scanned.load_profile()) == len(scanned.load_stripe()) - dropped
+
+
+def test_a_repeated_scan_skips_what_is_done(scanned, hull):
+    before = {file: file.stat().st_mtime_ns for file in scanned.root.rglob("*.p*")}
+    recording, rig = _open(hull)
+    ms.scan(recording, rig, MOTION, out=scanned.root)
+    assert {file: file.stat().st_mtime_ns for file in scanned.root.rglob("*.p*")} == before
+
+
+def test_another_motion_redoes_only_what_depends_on_it(scanned, hull, tmp_path):
+    shutil.copytree(scanned.root, tmp_path / "out")
+    stripes = tmp_path / "out/extract/stripes/000000.parquet"
+    before = stripes.stat().st_mtime_ns
+    recording, rig = _open(hull)
+    half = ms.ConstantSpeed(HULL_SPEED / 2, "y")
+    project = ms.scan(recording, rig, half, out=tmp_path / "out")
+    assert stripes.stat().st_mtime_ns == before
+    length = np.ptp(project.load_cloud().points[:, 1])
+    assert length < 0.6 * np.ptp(scanned.load_cloud().points[:, 1])
+
+
+def test_a_stopped_scan_goes_on_at_its_first_missing_part(scanned, hull, tmp_path):
+    recording, rig = _open(hull)
+
+    def stop(stage, done, total):
+        if stage == "extract" and done >= 64:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        ms.scan(recording, rig, MOTION, out=tmp_path / "out", progress=stop)
+    first = tmp_path / "out/extract/stripes/000000.parquet"
+    written = first.stat().st_mtime_ns
+    project = ms.scan(recording, rig, MOTION, out=tmp_path / "out")
+    assert first.stat().st_mtime_ns == written
+    again = (project.root / "cloud/cloud.ply").read_bytes()
+    assert again == (scanned.root / "cloud/cloud.ply").read_bytes()
+
+
+def _command(hull, out):
+    return [
+        sys.executable, "-m", "murkscan", "scan", str(hull / "frames"), "--rig",
+        str(hull / "rig.toml"), "--speed-mm-s", "100", "--out", str(out),
+    ]  # fmt: skip
+
+
+def test_a_killed_scan_goes_on_and_gives_the_same(scanned, hull, tmp_path):
+    """Killed without warning as soon as the first part is there."""
+    out = tmp_path / "out"
+    child = subprocess.Popen(_command(hull, out), stderr=subprocess.DEVNULL)
+    deadline = time.monotonic() + 60
+    while not (out / "extract/frames/000000.json").exists() and time.monotonic() < deadline:
+        assert child.poll() is None
+        time.sleep(0.005)
+    child.kill()
+    child.wait()
+    subprocess.run(_command(hull, out), check=True, capture_output=True)
+    again = (out / "cloud/cloud.ply").read_bytes()
+    assert again == (scanned.root / "cloud/cloud.ply").read_bytes()
+
+
+@pytest.mark.skipif(os.name != "posix", reason="file-size limits are POSIX")
+def test_a_full_disk_is_one_sentence_and_nothing_finished_is_lost(scanned, hull, tmp_path):
+    """A limit on the size of files stands for the disk: the cloud does not fit, stripes do."""
+    import resource
+
+    out = tmp_path / "out"
+    size = (scanned.root / "cloud/cloud.ply").stat().st_size - 1000
+    limited = subprocess.run(
+        _command(hull, out),
+        capture_output=True,
+        text=True,
+        check=False,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)),
+    )
+    assert limited.returncode == 2
+    assert "Traceback" not in limited.stderr
+    assert "cloud.ply" in limited.stderr
+    assert not list((out / "cloud").glob(".*part*"))
+    written = (out / "extract/stripes/000000.parquet").stat().st_mtime_ns
+    subprocess.run(_command(hull, out), check=True, capture_output=True)
+    assert (out / "extract/stripes/000000.parquet").stat().st_mtime_ns == written
+    again = (out / "cloud/cloud.ply").read_bytes()
+    assert again == (scanned.root / "cloud/cloud.ply").read_bytes()
+
+
+def test_a_recording_without_a_stripe_gives_an_empty_cloud_and_says_so(hull, tmp_path):
+    from murkscan.io.images import write_image
+
+    for i in range(5):
+        write_image(tmp_path / "dark" / f"{i}.png", np.zeros((576, 720), np.uint8))
+    rig = ms.load_rig(hull / "rig.toml")
+    recording = ms.open_recording(tmp_path / "dark", wavelength=rig.wavelength)
+    project = ms.scan(recording, rig, ms.ConstantStep(0.001, "y"), out=tmp_path / "out")
+    assert len(project.load_cloud()) == 0
+    assert "no stripe" in (project.root / "report/index.html").read_text().lower()
+
+
+def test_a_recording_of_another_camera_is_refused(hull, tmp_path):
+    from dataclasses import replace
+
+    recording, rig = _open(hull)
+    other = replace(rig, camera=replace(rig.camera, size=(640, 480)))
+    with pytest.raises(ms.InputError, match="720 × 576"):
+        ms.scan(recording, other, MOTION, out=tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_folder_with_other_things_is_left_alone(hull, tmp_path):
+    (tmp_path / "holiday.jpg").write_bytes(b"a picture")
+    recording, rig = _open(hull)
+    with pytest.raises(ms.InputError, match="other files"):
+        ms.scan(recording, rig, MOTION, out=tmp_path)
+    assert [file.name for file in tmp_path.iterdir()] == ["holiday.jpg"]
+
+
+def test_a_corrupt_picture_in_the_middle_is_skipped_and_counted(hull, tmp_path):
+    shutil.copytree(hull / "frames", tmp_path / "frames")
+    (tmp_path / "frames/000070.png").write_bytes(b"not a picture")
+    rig = ms.load_rig(hull / "rig.toml")
+    recording = ms.open_recording(tmp_path / "frames", wavelength=rig.wavelength)
+    project = ms.scan(recording, rig, MOTION, out=tmp_path / "out")
+    counts = project.finished("extract").counts()
+    assert (counts["frames"], counts["skipped"]) == (129, 1)
+    assert "000070.png" in counts["skips"][0][1]
+    assert 70 not in project.load_cloud().frame
+
+
+def test_the_demo_is_within_a_tenth_of_a_millimetre_of_the_truth(tmp_path):
+    _, errors = run_demo(tmp_path)
+    assert errors.count > 50_000
+    assert errors.rms < 1e-4  # the bar that the project sets itself
+
+
+def test_no_points_have_no_errors():
+    assert Errors.from_distances(np.zeros(0)).count == 0
