@@ -97,7 +97,7 @@ def laser(
 
 def _board(text: str, square_mm: float) -> "Chessboard":
     """Make the board of --board and --square-mm."""
-    match = re.fullmatch(r"\s*(\d+)\s*[xX×]\s*(\d+)\s*", text)  # noqa: RUF001
+    match = re.fullmatch(r"\s*(\d+)\s*[xX×]\s*(\d+)\s*", text)
     if match is None:
         raise InputError(
             f"--board {text!r} is not a board; give its inner corners as COLUMNSxROWS, such as 9x6."
@@ -162,7 +162,7 @@ def _print_laser(result: "LaserResult", rig: Path, number: int) -> None:
     found = result.calibration
     baseline, angle = found.laser.as_baseline_angle()
     nearest, farthest = distances_of(found)
-    n, d = found.laser.sheet.normal, found.laser.sheet.distance
+    n, d = found.sheet.normal, found.sheet.distance
     _print_table(
         f"Laser {number}",
         ("what", "value"),
@@ -222,11 +222,12 @@ def _say(words: str) -> None:
 
 def _print_table(title: str, columns: tuple[str, ...], rows: list[tuple[str, ...]]) -> None:
     from rich import print as show
+    from rich.markup import escape
     from rich.table import Table
 
     table = Table(title=title, title_justify="left")
     for column in columns:
-        table.add_column(column, justify="left" if column == columns[0] else "right")
+        table.add_column(escape(column), justify="left" if column == columns[0] else "right")
     for row in rows:
         table.add_row(*row)
     show(table)

@@ -75,8 +75,8 @@ class BoardPhotos:
             if photo.size != first.size:
                 raise InputError(
                     f"{self.path / photo.name} is {photo.size[0]} x {photo.size[1]} px but "
-                    f"{first.name} is {first.size[0]} x {first.size[1]} px; photos of one camera have one size: remove what does not "
-                    "belong, and never crop or resize."
+                    f"{first.name} is {first.size[0]} x {first.size[1]} px; photos of "
+                    "one camera have one size: remove what does not belong, never crop or resize."
                 )
             yield photo
         if first is None:

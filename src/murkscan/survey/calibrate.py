@@ -3,29 +3,25 @@
 import datetime
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..calibrate.board import Chessboard, Margin
-from ..calibrate.camera import CameraCalibration, calibrate_camera, locate_board
-from ..calibrate.contrast import laser_contrast, white_of_board
+from ..calibrate.camera import CameraCalibration, calibrate_camera
 from ..calibrate.corners import find_board, suggest_board
-from ..calibrate.sheet import LaserCalibration, StripeOnBoard, calibrate_laser
-from ..calibrate.stripe_on_board import count_lit_lines, keep_on_board, mask_to_sheet
+from ..calibrate.sheet import LaserCalibration, calibrate_laser
 from ..calibrate.verdict import Verdict, judge_camera, judge_laser, name_sigma
 from ..calibrate.view import BoardView
 from ..errors import EstimationError, InputError, MissingResult, NotEnoughData
 from ..extract import AbstractExtractor, GrayGravity
 from ..io.rig_toml import load_rig, save_camera, save_laser
-from ..types.arrays import Image, Pixels
-from ..types.frame import Frame
-from ..types.laser import Laser
-from ..types.pose import Pose
+from ..types.arrays import Image
 from ..types.rig import Rig
-from .board_photos import BoardPhotos, Photo
+from .board_photos import BoardPhotos
+from .board_stripes import StripeFinder
 from .calibrate_drawing import draw_boards, draw_stripes
 from .progress import Progress, silent
 
@@ -147,10 +143,10 @@ def calibrate_laser_from_photos(
     """
     rig = _load_calibrated(rig_path, laser)
     photos = BoardPhotos.open(path)
-    views, size = _find_boards(photos, board, progress, rig.camera.size)
+    views, _ = _find_boards(photos, board, progress, rig.camera.size)
     margin = margin or Margin(board.square, board.square, board.square, board.square)
-    finder = _StripeFinder(photos, views, board, margin, rig, extractor or GrayGravity(), progress)
-    stripes = finder.find()
+    finder = StripeFinder(photos, views, board, margin, rig, extractor or GrayGravity())
+    stripes = finder.find(progress)
     folder = rig_path.parent / "calibrate" / f"laser_{laser}"
     drawn = (photos, board, margin, rig.camera, folder, progress)
     try:
@@ -180,58 +176,6 @@ def calibrate_laser_from_photos(
     )
 
 
-@dataclass(frozen=True, eq=False)
-class _StripeFinder:
-    """Finds the stripe on the board in each photo that shows one."""
-
-    photos: BoardPhotos
-    views: list[BoardView]
-    board: Chessboard
-    margin: Margin
-    rig: Rig
-    extractor: AbstractExtractor
-    progress: Progress
-
-    def find(self) -> list[StripeOnBoard]:
-        """Give the stripe of each photo with a board; of length 0 where there is none."""
-        by_name = {view.name: view for view in self.views if view.is_found}
-        poses = {
-            name: locate_board(view, self.board, self.rig.camera)[0]
-            for name, view in by_name.items()
-        }
-        shown = (photo for photo in self.photos if photo.name in by_name)
-        contrasts = [self._contrast(photo, by_name[photo.name], poses[photo.name]) for photo in shown]
-        rows, columns = np.sum([count_lit_lines(image) for image in contrasts], axis=0)
-        rig = replace(
-            self.rig, lasers=(Laser.from_baseline_angle(1.0, 1.0, "x" if rows > columns else "y"),)
-        )
-        stripes = []
-        for number, (name, image) in enumerate(zip(by_name, contrasts, strict=True)):
-            pixels = self._extract(image, number, rig)
-            stripes.append(
-                keep_on_board(
-                    pixels, by_name[name], self.board, self.margin,
-                    camera=rig.camera, camera_from_board=poses[name],
-                )
-            )  # fmt: skip
-            self.progress("find stripes", number + 1, len(by_name))
-        return stripes
-
-    def _contrast(self, photo: Photo, view: BoardView, camera_from_board: Pose) -> Image:
-        white = white_of_board(photo.image, view, self.board)
-        return mask_to_sheet(
-            laser_contrast(photo.image, self.rig.wavelength, white=white),
-            self.board, self.margin, camera=self.rig.camera, camera_from_board=camera_from_board,
-        )  # fmt: skip
-
-    def _extract(self, image: Image, number: int, rig: Rig) -> Pixels:
-        """Find the stripe in one photo. Photos differ in light, so each is learnt by itself."""
-        frame = Frame(image, number, float(number))
-        background = self.extractor.learn([frame], rig)
-        (stripe,) = self.extractor.extract([frame], rig, background)
-        return stripe.pixels
-
-
 def _find_boards(
     photos: BoardPhotos,
     board: Chessboard,
@@ -258,9 +202,7 @@ def _find_boards(
     return views, first.size
 
 
-def _never_found(
-    photos: BoardPhotos, board: Chessboard, num_photos: int, seen: list[Image]
-) -> str:
+def _never_found(photos: BoardPhotos, board: Chessboard, num_photos: int, seen: list[Image]) -> str:
     other = suggest_board(seen, board)
     if other is not None:
         return (
@@ -281,6 +223,11 @@ def _load_calibrated(rig_path: Path, laser: int) -> Rig:
             "--rig."
         )
     rig = load_rig(rig_path)
+    if rig.camera.port is not None:
+        raise InputError(
+            f"The camera of {rig_path} has a port, and a laser can be calibrated in air without "
+            "one only; take [camera.port] out, photograph in air, and put it back."
+        )
     if not 0 <= laser <= len(rig.lasers):
         raise InputError(
             f"{rig_path} has {len(rig.lasers)} laser(s), numbered from 0, so --laser may be "

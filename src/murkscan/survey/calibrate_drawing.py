@@ -65,8 +65,10 @@ def draw_stripes(
         if photo.name not in found:
             continue
         stripe = found[photo.name]
-        note = f"{stripe.name}: {len(stripe.pixels)} points" if len(stripe.pixels) else (
-            f"{stripe.name}: no stripe on the board's paper"
+        note = (
+            f"{stripe.name}: {len(stripe.pixels)} points"
+            if len(stripe.pixels)
+            else (f"{stripe.name}: no stripe on the board's paper")
         )
         residuals = np.zeros(len(stripe.pixels))
         if calibration is not None and stripe.name in used:
@@ -85,7 +87,7 @@ def draw_stripes(
         progress("draw", done, len(stripes))
 
 
-def _number(items: Sequence[BoardView] | Sequence[StripeOnBoard]) -> dict[str, int]:
+def _number(items: Sequence[BoardView | StripeOnBoard]) -> dict[str, int]:
     return {item.name: number for number, item in enumerate(items)}
 
 

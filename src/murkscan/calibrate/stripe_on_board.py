@@ -1,0 +1,108 @@
+"""Which of the stripe points found in a photo lie on the board's flat paper."""
+
+import cv2
+import numpy as np
+
+from ..optics import project
+from ..types.arrays import Image, Pixels
+from ..types.camera import Camera
+from ..types.pose import Pose
+from .board import Chessboard, Margin
+from .corners import smallest_pitch
+from .sheet import StripeOnBoard, locate_on_board
+from .view import BoardView
+
+_RIM = 6.0
+"""How far stripe points keep away from edges: the window of a stripe finder must not see one [px].
+"""
+_MAX_RIM = 0.3
+"""The same in squares, so that small squares keep some light."""
+_STRAIGHT = 1.5
+"""Distance from the photo's straight line within which a point belongs to the stripe [px]."""
+_MIN_POINTS = 20
+"""Points on one line that make a stripe: chance puts fewer there."""
+_MIN_SHARE = 0.4
+"""Share of the points on paper that a stripe has at least; noise is spread all over."""
+_NUM_TRIALS = 200
+"""Pairs of points tried: one good pair is among them, but for 1e-15, if 0.4 are good."""
+_FAINT = 8
+"""Contrast up to which a pixel is no stripe [grey levels]."""
+_EDGE_STEPS = 16
+"""Points on each side of the sheet's outline: a lens bends it."""
+
+
+def mask_to_sheet(
+    image: Image, board: Chessboard, margin: Margin, *, camera: Camera, camera_from_board: Pose
+) -> Image:
+    """Blacken everything outside of the board's sheet, squares and margin."""
+    corners = board.outline(margin)
+    share = np.linspace(0, 1, _EDGE_STEPS, endpoint=False)[:, None]
+    sides = [
+        a + share * (b - a) for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True)
+    ]
+    outline = project(camera, camera_from_board @ np.concatenate(sides))
+    mask = np.zeros_like(image)
+    if np.isfinite(outline).all():
+        cv2.fillPoly(mask, [np.round(outline).astype(np.int32)], 1)
+    return image * mask
+
+
+def count_lit_lines(image: Image) -> tuple[int, int]:
+    """Count the rows and the columns in which the stripe of a masked contrast image lies.
+
+    A stripe along the columns lights many rows and few columns: then the laser sits along x.
+    """
+    lit = image[image > 0]
+    if lit.size == 0:
+        return 0, 0
+    is_bright = image > max(_FAINT, 0.5 * float(np.percentile(lit, 99.5)))
+    return int(is_bright.any(axis=1).sum()), int(is_bright.any(axis=0).sum())
+
+
+def keep_on_board(
+    pixels: Pixels,
+    view: BoardView,
+    board: Chessboard,
+    margin: Margin,
+    *,
+    camera: Camera,
+    camera_from_board: Pose,
+) -> StripeOnBoard:
+    """Keep the stripe points on the board's blank paper that lie on one straight line.
+
+    The sheet meets the board in a straight line; what lies beside it is glare or noise.
+
+    Args:
+        pixels: Stripe points found in the photo [px].
+        view: The board in the photo.
+        board: The board.
+        margin: How far its sheet runs on beyond the squares.
+        camera: The camera.
+        camera_from_board: Where the board is.
+
+    Returns:
+        The stripe; of length 0 where the photo does not show one on the board.
+    """
+    rim = min(_RIM / smallest_pitch(view.corners, board), _MAX_RIM) * board.square
+    in_camera = locate_on_board(camera, pixels, camera_from_board)
+    in_board = camera_from_board.inverse() @ in_camera
+    is_on_paper = board.is_on_paper(in_board, margin, rim=rim, is_first_dark=view.is_first_dark)
+    flat = in_camera[is_on_paper, :2] / in_camera[is_on_paper, 2:] * camera.focal_length
+    kept = pixels[is_on_paper][_on_one_line(flat)]
+    return StripeOnBoard(view.name, kept, camera_from_board)
+
+
+def _on_one_line(points: Pixels) -> np.ndarray:
+    """Tell which points lie on the straight line that most of them lie on; none if too few do."""
+    nobody = np.zeros(len(points), dtype=bool)
+    if len(points) < _MIN_POINTS:
+        return nobody
+    random = np.random.default_rng(0)
+    first, second = points[random.integers(len(points), size=(2, _NUM_TRIALS))]
+    along = second - first
+    lengths = np.linalg.norm(along, axis=1)
+    across = np.stack([-along[:, 1], along[:, 0]], axis=1)[lengths > 0] / lengths[lengths > 0, None]
+    offsets = np.abs(points @ across.T - np.sum(first[lengths > 0] * across, axis=1))
+    members = offsets < _STRAIGHT
+    best = members[:, int(np.argmax(members.sum(axis=0)))] if members.size else nobody
+    return best if best.sum() >= max(_MIN_POINTS, _MIN_SHARE * len(points)) else nobody

@@ -1,0 +1,34 @@
+"""A board as one photo shows it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..types.arrays import Pixels, Points
+
+
+@dataclass(frozen=True, eq=False)
+class BoardView:
+    """The inner corners found in one photo."""
+
+    name: str
+    """Name of the photo, for messages and files."""
+    corners: Pixels
+    """Inner corners, row after row as the board has them [px]; of length 0 where none was found."""
+    is_first_dark: bool = True
+    """Whether the square before the first corner, up and left, is dark."""
+
+    @property
+    def is_found(self) -> bool:
+        """Tell whether the photo shows the board."""
+        return len(self.corners) > 0
+
+
+def as_opencv(
+    views: Sequence[BoardView], flat: Points
+) -> tuple[list[np.ndarray], list[np.ndarray]]:
+    """Give board points and corners of each view as OpenCV's calibration takes them."""
+    return [flat.astype(np.float32)] * len(views), [
+        np.ascontiguousarray(view.corners[:, None], dtype=np.float32) for view in views
+    ]
