@@ -1,5 +1,16 @@
-"""How light travels: no files, no images, no settings."""
+"""How light travels: no files, no images, no settings.
 
-from .pinhole import back_project as back_project
-from .pinhole import normalise as normalise
-from .pinhole import project as project
+Where light crosses a window, what lies outside is given as its refractive `index`: ask
+`refractive_index(rig.water, rig.wavelength)` once and hand it on. Without windows it may be left
+out, and everything is the pinhole and the plane.
+"""
+
+from .sheet import distance_to_sheet as distance_to_sheet
+from .sheet import equivalent_plane as equivalent_plane
+from .sheet import intersect_rays_with_sheet as intersect_rays_with_sheet
+from .sheet import locate_on_fan as locate_on_fan
+from .sheet import trace_fan as trace_fan
+from .view import back_project as back_project
+from .view import normalise as normalise
+from .view import project as project
+from .water import refractive_index as refractive_index

@@ -1,10 +1,12 @@
-"""A pinhole camera with lens distortion."""
+"""A pinhole camera with lens distortion, and the window that it looks through."""
 
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..errors import InputError
 from .arrays import Matrix3, Scalars
+from .port import FlatPort, Port
 
 
 def _no_distortion() -> Scalars:
@@ -30,6 +32,17 @@ class Camera:
     """Where the optical axis meets the image, u and v [px]."""
     distortion: Scalars = field(default_factory=_no_distortion)
     """Distortion k1 k2 p1 p2 k3, for normalised image coordinates."""
+    port: Port | None = None
+    """The window before the lens; without one the intrinsics hold in the medium they were
+    calibrated in."""
+
+    def __post_init__(self) -> None:
+        """Refuse a port behind the camera."""
+        if isinstance(self.port, FlatPort) and not self.port.normal[2] > 0:
+            raise InputError(
+                f"The normal of the camera's port must point forwards, its z above 0, got "
+                f"{self.port.normal}."
+            )
 
     def as_matrix(self) -> Matrix3:
         """Give the intrinsic matrix K, the A of the paper's equation (2)."""

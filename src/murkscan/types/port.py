@@ -34,11 +34,11 @@ class Layer:
 class FlatPort:
     """Plane layers one after another; a flat window has one::
 
-        optical                inner      outer
-        centre                 face       face
-           ●───────distance──────┃glass ...┃     water
-                                 ┃         ┃
-                                      ───────▶ normal
+    optical                inner      outer
+    centre                 face       face
+       ●───────distance──────┃glass ...┃     water
+                             ┃         ┃
+                                  ───────▶ normal
     """
 
     normal: Vector

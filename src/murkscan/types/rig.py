@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from .camera import Camera
 from .laser import Laser
 from .pose import Pose
+from .water import Water
 
 
 @dataclass(frozen=True, eq=False)
@@ -16,5 +17,7 @@ class Rig:
     """The lasers; none before `calibrate laser` has run."""
     wavelength: float = 532e-9
     """Wavelength of the lasers [m]."""
+    water: Water | None = None
+    """What the rig is in, behind its ports; None for air."""
     vehicle_from_camera: Pose | None = None
     """The mount, where the rig sits on a vehicle whose own poses are logged."""
