@@ -11,6 +11,9 @@ from numba import njit
 
 from .refraction import Interfaces, trace_ray
 
+_Ray = tuple[float, float, float, float, float, float]
+"""Start x y z and direction x y z."""
+
 _SAMPLES = 33
 """Rays of a fan among which the one that meets a camera ray, or a point, is looked for."""
 _STEP = 1e-5
@@ -28,9 +31,7 @@ class Fan(NamedTuple):
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _fan_ray(
-    t: float, fan: Fan, interfaces: Interfaces
-) -> tuple[float, float, float, float, float, float]:
+def _fan_ray(t: float, fan: Fan, interfaces: Interfaces) -> _Ray:
     """Start and direction, outside its port, of a fan's ray."""
     c = 1.0 / np.sqrt(1.0 + t * t)
     s = c * t
@@ -60,7 +61,7 @@ def _cross(
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _moment(t: float, ray: tuple, camera_ray: tuple) -> float:
+def _moment(t: float, ray: _Ray, camera_ray: _Ray) -> float:
     """Volume that two lines span, 0 where they meet; without a port it is linear in t."""
     x, y, z, dx, dy, dz = ray
     ox, oy, oz, ex, ey, ez = camera_ray
@@ -69,7 +70,9 @@ def _moment(t: float, ray: tuple, camera_ray: tuple) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _meeting(ends: tuple, camera_ray: tuple, fan: Fan, interfaces: Interfaces) -> tuple:
+def _meeting(
+    ends: tuple[float, float, float, float], camera_ray: _Ray, fan: Fan, interfaces: Interfaces
+) -> _Ray:
     """The fan's ray that meets the camera's, between two t with moments: regula falsi.
 
     The Illinois rule halves the moment of the end that stays, so that both ends close in.
@@ -92,7 +95,7 @@ def _meeting(ends: tuple, camera_ray: tuple, fan: Fan, interfaces: Interfaces) -
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _depth_of_meeting(ray: tuple, camera_ray: tuple) -> float:
+def _depth_of_meeting(ray: _Ray, camera_ray: _Ray) -> float:
     """How far along the camera's ray the two are nearest; infinite if that is behind either."""
     x, y, z, dx, dy, dz = ray
     ox, oy, oz, ex, ey, ez = camera_ray
@@ -108,7 +111,7 @@ def _depth_of_meeting(ray: tuple, camera_ray: tuple) -> float:
 
 @njit(cache=True, nogil=True)
 def _depth_on_fan(
-    camera_ray: tuple,
+    camera_ray: _Ray,
     tangents: np.ndarray,
     moments: np.ndarray,
     fan: Fan,

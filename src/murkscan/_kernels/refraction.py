@@ -112,7 +112,9 @@ def aim_through_planes(points: np.ndarray, interfaces: Interfaces) -> np.ndarray
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _sweep(turn: float, eccentricity: float, distance: float, interfaces: Interfaces) -> tuple:
+def _sweep(
+    turn: float, eccentricity: float, distance: float, interfaces: Interfaces
+) -> tuple[float, float]:
     """Angle about the centre from the origin to the point, and its derivative by the turn.
 
     n r sin(angle to the radius) is the same all along the ray (Bouguer), so that each shell adds

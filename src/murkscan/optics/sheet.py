@@ -52,10 +52,8 @@ def distance_to_sheet(points: Points, laser: Laser, index: float | None = None) 
         InputError: The laser has a port, but no index is given.
     """
     sheet = laser.sheet
-    if isinstance(sheet, Plane):
-        return sheet.distance_to(points)
-    if sheet.port is None:
-        return sheet.plane.distance_to(points)
+    if isinstance(sheet, Plane) or sheet.port is None:
+        return laser.as_plane().distance_to(points)
     return locate_on_fan(points, sheet, index).distance
 
 
@@ -108,10 +106,8 @@ def equivalent_plane(
         NotEnoughData: The fan does not reach those depths.
     """
     sheet = laser.sheet
-    if isinstance(sheet, Plane):
-        return sheet
-    if sheet.port is None:
-        return sheet.plane
+    if isinstance(sheet, Plane) or sheet.port is None:
+        return laser.as_plane()
     angles = np.linspace(-sheet.half_angle, sheet.half_angle, _NUM_ANGLES)
     rays = trace_fan(sheet, angles, index)
     with np.errstate(divide="ignore", invalid="ignore"):

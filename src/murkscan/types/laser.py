@@ -18,13 +18,15 @@ Axis = Literal["x", "y"]
 @final
 @dataclass(frozen=True, eq=False)
 class Fan:
-    """Rays from one point that spread in a plane, and perhaps leave through a window::
+    r"""Rays from one point that spread in a plane, and perhaps leave through a window.
 
-                   ╱ + half_angle
-                 ╱
-        origin ●──────▶ direction        tangent ▲ along the line
-                 ╲
-                   ╲
+    Seen with the tangent, which runs along the line, upwards::
+
+                    / + half angle
+                  /
+        origin  ●────────▶ direction
+                  \
+                    \ - half angle
 
     Behind a port the rays bend one by one, and their surface is no longer a plane unless that
     plane contains the port's normal.
@@ -153,6 +155,21 @@ class Laser:
         normal["xy".index(axis)], normal[2] = math.sin(angle), -math.cos(angle)
         return cls(Plane(normal, baseline * math.sin(angle)), axis)
 
+    def as_plane(self) -> Plane:
+        """Give the sheet as the plane that it is.
+
+        Raises:
+            InputError: The sheet is bent by a port.
+        """
+        if isinstance(self.sheet, Plane):
+            return self.sheet
+        if self.sheet.port is None:
+            return self.sheet.plane
+        raise InputError(
+            "A laser's sheet behind a port is no plane and has no b and θ of its own; "
+            "take those of murkscan.optics.equivalent_plane."
+        )
+
     def as_baseline_angle(self) -> tuple[float, float]:
         """Give the equivalent b [m] and θ [rad]: where the sheet cuts the axis, and how steeply.
 
@@ -162,12 +179,7 @@ class Laser:
         Raises:
             InputError: The sheet is bent by a port; only its equivalent plane has b and θ.
         """
-        plane = self.sheet.plane if isinstance(self.sheet, Fan) else self.sheet
-        if isinstance(self.sheet, Fan) and self.sheet.port is not None:
-            raise InputError(
-                "A sheet behind a port is no plane and has no b and θ of its own; "
-                "take those of murkscan.optics.equivalent_plane."
-            )
+        plane = self.as_plane()
         along, forward = plane.normal["xy".index(self.axis)], plane.normal[2]
         baseline = plane.distance / along
         return float(baseline), math.atan2(abs(along), -forward * math.copysign(1.0, along))

@@ -32,7 +32,9 @@ class Layer:
 @final
 @dataclass(frozen=True, eq=False)
 class FlatPort:
-    """Plane layers one after another; a flat window has one::
+    """Plane layers one after another; a flat window has one.
+
+    ::
 
     optical                inner      outer
     centre                 face       face
