@@ -17,8 +17,8 @@ class Clock:
     """Usual time between two pictures in the container [s]; 0 where it has no times."""
     rate: float | None
     """Pictures a second that replace the container's times, where the user gave them."""
-    slack: int
-    """By how many pictures a sound file may fall short of what its duration says."""
+    promised_end: float
+    """When the file says it ends [s of the container]; -inf where it does not say."""
 
     @property
     def period(self) -> float:
@@ -37,6 +37,12 @@ class Clock:
         if math.isnan(container_time):
             return self.start + number * self.spacing
         return container_time
+
+    def count_missing(self, last: float) -> int:
+        """Count the pictures that the file promises after its last one, at `last` [s]."""
+        if not self.spacing or not math.isfinite(self.promised_end - last):
+            return 0
+        return max(round((self.promised_end - last) / self.spacing) - 1, 0)
 
     def number_of(self, container_time: float) -> int:
         """Give the number of the picture at a time of the container [s]."""

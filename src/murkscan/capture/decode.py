@@ -125,6 +125,8 @@ def _decode_packets(container: Any, fed: _Fed) -> Iterator[Any]:
         if packet is None:
             return
         fed.add(packet)
+        if packet.is_corrupt:
+            yield None
         try:
             yield from packet.decode()
         except av.error.FFmpegError:

@@ -29,7 +29,7 @@ _RUN = 5
 _RUNS = (5, 20)
 """Runs to look at; the second number where the first left it open."""
 _SLACK = 0.5
-"""By how much a container's duration may exceed its pictures before some are missing [s]."""
+"""By how much other streams, such as sound, may outlast the pictures [s]."""
 
 
 def open_recording(
@@ -159,8 +159,7 @@ def _open_video(path: Path, wavelength: float, fps: float | None, fields: Fields
     first_runs = list(read_runs(path, times, _RUNS[0] * _RUN))
     spacing = usual_spacing([[picture_time(decoded) for decoded in run] for run in first_runs])
     claimed = facts.num_pictures or (round(facts.duration / spacing) if spacing else 0)
-    slack = claimed if facts.num_pictures else round(_SLACK / spacing) if spacing else 0
-    clock = Clock(facts.start, spacing, fps, slack)
+    clock = Clock(facts.start, spacing, fps, facts.promised_end)
 
     def runs(count: int) -> Iterable[list[Image]]:
         times = [facts.start + facts.duration * i / count for i in range(count)]
@@ -196,6 +195,8 @@ class _Facts:
     """Pictures that the container counts; 0 where it does not."""
     duration: float
     """Length that the container claims [s]; 0 where it does not."""
+    promised_end: float
+    """When pictures end by that length [s]; -inf where the container counts them instead."""
 
 
 def _look_at(path: Path) -> _Facts:
@@ -208,10 +209,14 @@ def _look_at(path: Path) -> _Facts:
         duration = (container.duration or 0) / av.time_base
         if stream.duration:
             duration = float(stream.duration * stream.time_base)
+        start = 0.0 if math.isnan(time) else time
+        counts = stream.frames > 0 or duration == 0
+        slack = _SLACK if len(container.streams) > 1 else 0.0
         return _Facts(
-            start=0.0 if math.isnan(time) else time,
+            start=start,
             size=(decoded.width, decoded.height),
             is_flagged=decoded.interlaced_frame,
             num_pictures=stream.frames,
             duration=duration,
+            promised_end=-math.inf if counts else start + duration - slack,
         )

@@ -79,7 +79,7 @@ def _open(source: str, timeout: float) -> Any:
     return stream
 
 
-def _silence(source: str, timeout: float, error: OSError) -> DeviceError:
+def _silence(source: str, timeout: float, error: Any) -> DeviceError:
     why = "" if isinstance(error, av.error.ExitError) else f" ({error.strerror})"
     return DeviceError(
         f"No stream comes from {source} within {timeout:g} s{why}; check that the camera is "

@@ -41,21 +41,20 @@ class Video(AbstractRecording):
 
         The video is decoded from its beginning, since only so the count is exact.
         """
-        each, end = self.fields_per_picture, 0
+        each, end, time = self.fields_per_picture, 0, self.clock.start
         with closing(open_video(self.path)) as container:
             for item in decode_pictures(container):
                 if isinstance(item, Loss):
                     end = item.first + item.count
                     self._tell(item.first, end, start, on_skip, _CUT if item.is_cut else _BROKEN)
                     continue
-                end = item.number + 1
+                end, time = item.number + 1, picture_time(item.decoded)
                 if end * each > start:
                     yield from (
                         f for f in self._read(item.decoded, item.number) if f.index >= start
                     )
-        claimed = (self.num_frames or 0) // each
-        if claimed - end > self.clock.slack:
-            self._tell(end, claimed, start, on_skip, _CUT)
+        if missing := self.clock.count_missing(time):
+            self._tell(end, end + missing, start, on_skip, _CUT)
 
     def sample(self, count: int) -> list[Frame]:
         """Read about `count` frames spread evenly over the recording; see the base.

@@ -1,0 +1,140 @@
+"""Interlaced recordings are known from the picture; the truth: when the rows were drawn."""
+
+import numpy as np
+import pytest
+
+from murkscan.capture import open_recording
+from murkscan.capture.fields import find_field_order
+
+ROWS, COLUMNS = 576, 720
+ORDERS = ["progressive", "top-first", "bottom-first"]
+FLAGS = {"none": "", "top": "interlaced=1:tff=1", "bottom": "interlaced=1:bff=1"}
+
+
+def draw(time, *, along, speed, peak, noise, random):
+    """Draw a stripe over relief that passes; `time` in pictures, `speed` at most [px/picture]."""
+    across, down = (ROWS, COLUMNS) if along == "rows" else (COLUMNS, ROWS)
+    centre = across / 2 + 20 * speed * np.sin(np.arange(down) / 90 + time / 20)
+    stripe = 20 + peak * np.exp(-((np.arange(across)[:, None] - centre) ** 2) / 8)
+    picture = stripe if along == "rows" else stripe.T
+    return picture + random.normal(0, noise, (ROWS, COLUMNS))
+
+
+def film(order, num_pictures=12, *, along="columns", speed=3.0, peak=120, noise=4):
+    """Film as a camera of that field order does: the second field half a picture later."""
+    random = np.random.default_rng(7)
+    scene = {"along": along, "speed": speed, "peak": peak, "noise": noise, "random": random}
+    pictures = []
+    for time in range(num_pictures):
+        picture = draw(time, **scene)
+        if order != "progressive":
+            late = 1 if order == "top-first" else 0
+            picture[late::2] = draw(time + 0.5, **scene)[late::2]
+        pictures.append(np.clip(np.rint(picture), 0, 255).astype(np.uint8))
+    return pictures
+
+
+def runs(pictures):
+    return [pictures[:6], pictures[6:]]
+
+
+@pytest.mark.parametrize("order", ORDERS)
+@pytest.mark.parametrize("along", ["rows", "columns"])
+@pytest.mark.parametrize("speed", [0.5, 3.0, 30.0])
+def test_the_order_is_found_whichever_way_the_stripe_runs_and_however_fast(order, along, speed):
+    assert find_field_order(runs(film(order, along=along, speed=speed))) == order
+
+
+@pytest.mark.parametrize("order", ORDERS)
+@pytest.mark.parametrize("along", ["rows", "columns"])
+def test_the_order_is_found_in_low_light(order, along):
+    # The stripe is but twice the noise of a pixel.
+    pictures = film(order, 25, along=along, peak=25, noise=12)
+    assert find_field_order(runs(pictures)) == order
+
+
+@pytest.mark.parametrize("noise", [0, 2, 12])
+def test_where_nothing_moves_there_is_no_telling(noise):
+    assert find_field_order(runs(film("progressive", speed=0, noise=noise))) == "undecided"
+
+
+def test_snow_that_is_gone_in_the_next_picture_is_not_taken_for_fields():
+    random = np.random.default_rng(2)
+    pictures = film("progressive")
+    for picture in pictures:
+        for row, column in random.integers(0, 560, (200, 2)):
+            picture[row : row + 4, column : column + 4] = 255
+    assert find_field_order(runs(pictures)) == "progressive"
+
+
+def test_single_pictures_tell_nothing():
+    pictures = film("top-first", 3)
+    assert find_field_order([[picture] for picture in pictures]) == "undecided"
+    assert find_field_order([]) == "undecided"
+
+
+@pytest.mark.parametrize("flag", FLAGS)
+@pytest.mark.parametrize("order", ORDERS)
+@pytest.mark.parametrize("along", ["rows", "columns"])
+def test_the_flag_of_a_video_does_not_matter(tmp_path, write_video, order, along, flag):
+    path = write_video(
+        tmp_path / "dive.mkv",
+        film(order, 14, along=along),
+        codec="libx264",
+        kept="yuv420p",
+        options={"preset": "veryfast", "crf": "23", "x264-params": FLAGS[flag]},
+    )
+    assert open_recording(path).order == order
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_grabbed_pictures_in_a_folder_are_told_as_well(tmp_path, write_folder, order):
+    recording = open_recording(write_folder(tmp_path, film(order)))
+    assert recording.order == order
+
+
+def test_where_nothing_moves_the_flag_decides(tmp_path, write_video):
+    still = film("progressive", 6, speed=0, noise=0)
+    for flag, order in (("none", "progressive"), ("top", "top-first")):
+        path = write_video(
+            tmp_path / f"{flag}.mkv",
+            still,
+            codec="libx264",
+            kept="yuv420p",
+            options={"preset": "veryfast", "x264-params": FLAGS[flag]},
+        )
+        assert open_recording(path).order == order
+
+
+@pytest.mark.parametrize("order", ORDERS[1:])
+def test_fields_follow_the_motion_at_their_own_times(tmp_path, write_video, order):
+    """The centre of the stripe, read from each field at its time, lies on the drawn curve."""
+    path = write_video(tmp_path / "dive.mkv", film(order, noise=0))
+    recording = open_recording(path)
+    frames = list(recording.frames())
+    assert (recording.fields_per_picture, recording.num_frames) == (2, 24)
+    assert [frame.time for frame in frames[:3]] == pytest.approx([0, 0.02, 0.04])
+    for frame in frames:
+        row = 100
+        weights = frame.image[row].astype(float) - 20
+        centre = (weights * np.arange(COLUMNS)).sum() / weights.sum()
+        v = frame.as_full_rows(np.array([float(row)]))[0]
+        drawn = COLUMNS / 2 + 60 * np.sin(v / 90 + frame.time * 25 / 20)
+        # Rounding to whole grey levels moves a centre by some hundredths of a pixel; half a
+        # picture's motion is up to 1.5 px.
+        assert centre == pytest.approx(drawn, abs=0.1)
+
+
+def test_what_the_user_says_of_the_fields_holds(tmp_path, write_folder):
+    folder = write_folder(tmp_path, film("top-first", 6))
+    for order in ORDERS:
+        assert open_recording(folder, fields=order).order == order
+
+
+@pytest.mark.parametrize(
+    "name", ["stage_stairs/grey_step_8.94mm.mp4", "stage_stairs/scan", "arm_poses"]
+)
+def test_real_progressive_recordings_are_known_as_such(data, name):
+    first, *rest = name.split("/")
+    recording = open_recording(data(first).joinpath(*rest), wavelength=650e-9)
+    assert recording.order == "progressive"
