@@ -2,9 +2,11 @@
 
 import heapq
 import math
+from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from statistics import median
 from typing import Any
 
 import av
@@ -62,9 +64,10 @@ def decode_pictures(container: Any) -> Iterator[Picture | Loss]:
     """Decode a container from its present place; numbers count from 0 there.
 
     A picture that the decoder gives up, or marks as patched up from others, is a loss. Lost
-    pictures keep their numbers: those of the packets that were fed and never came out.
+    pictures keep their numbers: those of the packets that were fed and never came out, or, where
+    damage swallowed packets too, as many as fit into the gap in time.
     """
-    fed = _Fed()
+    fed, rhythm = _Fed(), _Rhythm()
     number, lost, damaged = 0, 0, True
     for decoded in _decode_packets(container, fed):
         if decoded is None:
@@ -76,6 +79,7 @@ def decode_pictures(container: Any) -> Iterator[Picture | Loss]:
         if decoded.is_corrupt:
             lost, damaged = lost + 1, True
             continue
+        lost = max(lost, rhythm.beat(decoded.pts, damaged))
         if lost:
             yield Loss(number, lost)
         yield Picture(number + lost, decoded)
@@ -111,6 +115,26 @@ class _Fed:
         while pts is not None and self.times and self.times[0] <= pts:
             missing += heapq.heappop(self.times) < pts
         return missing
+
+
+class _Rhythm:
+    """How far pictures are apart, by those that were decoded lately."""
+
+    def __init__(self) -> None:
+        self._last: int | None = None
+        self._steps: deque[int] = deque(maxlen=25)
+
+    def beat(self, pts: int | None, damaged: bool) -> int:
+        """Note the next good picture; if there was damage before it, say how many fit between."""
+        step = None if pts is None or self._last is None else pts - self._last
+        self._last = pts
+        if step is None or step <= 0:
+            return 0
+        if not damaged:
+            self._steps.append(step)
+        if not damaged or not self._steps:
+            return 0
+        return max(round(step / median(self._steps)) - 1, 0)
 
 
 def _decode_packets(container: Any, fed: _Fed) -> Iterator[Any]:
