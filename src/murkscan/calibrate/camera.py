@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from jaxtyping import Float
 
 from ..errors import Degenerate, InputError, NotEnoughData
 from ..types.arrays import Pixels, Points, Scalars
@@ -44,7 +45,7 @@ class CameraCalibration:
     """Where the board was in each view."""
     residuals: tuple[Pixels, ...]
     """Corner as found minus corner as projected, of each view [px]."""
-    sigma: Scalars
+    sigma: Float[np.ndarray, "9"]
     """Standard deviation of each of `PARAMETERS`: OpenCV's or the jackknife's, the larger."""
     left_out: tuple[BoardView, ...]
     """Views left out, since they fit far worse than the others."""

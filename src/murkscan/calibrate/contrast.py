@@ -11,10 +11,12 @@ _BLUE_END, _GREEN_END = 490e-9, 580e-9
 """Wavelengths [m] at which a colour camera's channels take over from each other."""
 _FULL = 250
 """Level from which a channel counts as saturated."""
-_HOLE = 15
+_HOLE = 21
 """Widest saturated core of a stripe that is closed [px]."""
 _NEIGHBOURHOOD = 41
 """Window in which a grey photo's paper is looked for, several stripes wide [px]."""
+_BRIGHTER = 1.05
+"""How much brighter than white paper a grey photo's stripe is at least: paper is grained."""
 _COLOURLESS = 4
 """Difference of the channels below which a photo is grey."""
 
@@ -29,8 +31,8 @@ def laser_contrast(image: ColourImage, wavelength: float, *, white: Vector) -> I
 
     The channel of the laser minus the mean of the others, after white paper has been made white:
     so paper, dark squares and white glare are 0, and the stripe stands alone. Its middle, where it
-    saturates to white, is closed from its coloured flanks. A photo without colour gives its
-    brightness above the neighbourhood instead.
+    saturates and turns white, is closed from its coloured flanks. A photo without colour gives its
+    brightness above the paper instead.
 
     Args:
         image: The photo.
@@ -41,7 +43,7 @@ def laser_contrast(image: ColourImage, wavelength: float, *, white: Vector) -> I
         8-bit image of the photo's size.
     """
     if is_colourless(image):
-        return _brightness_above_neighbourhood(image[:, :, 1])
+        return _brightness_above_paper(image[:, :, 1], float(white[1]))
     channel = channel_of(wavelength)
     others = [c for c in range(3) if c != channel]
     gain = white[channel] / np.maximum(white, 1.0)
@@ -49,12 +51,12 @@ def laser_contrast(image: ColourImage, wavelength: float, *, white: Vector) -> I
     weights[0, channel], weights[0, others] = 1.0, -gain[others] / 2
     contrast = np.clip(cv2.transform(image.astype(np.float32), weights), 0, 255)
     levels = np.round(contrast).astype(np.uint8)
-    is_white = image.min(axis=2) >= _FULL
-    if not is_white.any():
+    is_full = image[:, :, channel] >= _FULL
+    if not is_full.any():
         return levels
     window = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (_HOLE, _HOLE))
     closed = cv2.morphologyEx(levels, cv2.MORPH_CLOSE, window)
-    return np.where(is_white, closed, levels)
+    return np.where(is_full, closed, levels)
 
 
 def is_colourless(image: ColourImage) -> bool:
@@ -75,6 +77,10 @@ def white_of_board(image: ColourImage, view: BoardView, board: Chessboard) -> Ve
     return np.median(image[v[inside], u[inside]], axis=0).astype(np.float64)
 
 
-def _brightness_above_neighbourhood(grey: Image) -> Image:
-    paper = cv2.medianBlur(np.ascontiguousarray(grey), _NEIGHBOURHOOD)
-    return cv2.subtract(grey, paper)
+def _brightness_above_paper(grey: Image, white: float) -> Image:
+    """Give what is brighter than both the board's light squares and the neighbourhood.
+
+    The first keeps out the squares' edges, the second paper in brighter light.
+    """
+    around = cv2.medianBlur(np.ascontiguousarray(grey), _NEIGHBOURHOOD)
+    return cv2.subtract(grey, np.maximum(around, np.uint8(min(_BRIGHTER * white, 255))))

@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import cv2
 import numpy as np
+from jaxtyping import Float, UInt8
 
 from ..optics import project
 from ..types.arrays import ColourImage, Pixels, Scalars
@@ -12,6 +13,8 @@ from ..types.pose import Pose
 from .board import Chessboard, Margin
 from .view import BoardView
 
+Canvas = UInt8[np.ndarray, "height width 3"]
+"""A photo enlarged and written on: red, green, blue."""
 _GAIN = 40
 """How much longer than they are residuals are drawn."""
 _MIN_WIDTH = 1200
@@ -21,7 +24,7 @@ _GREEN, _RED, _YELLOW, _BLUE = (0, 220, 70), (255, 50, 40), (255, 210, 0), (40, 
 
 def draw_board(
     photo: ColourImage, view: BoardView, board: Chessboard, residuals: Pixels, note: str
-) -> ColourImage:
+) -> Canvas:
     """Draw the corners of one photo, each with its residual, and a line of words.
 
     Args:
@@ -52,9 +55,9 @@ def draw_stripe(
     residuals: Scalars,
     note: str,
     *,
-    outline: Pixels,
+    outline: Float[np.ndarray, "k 2"],
     tolerance: float,
-) -> ColourImage:
+) -> Canvas:
     """Draw the stripe points of one photo, coloured by residual, and the sheet's outline.
 
     Args:
@@ -85,7 +88,7 @@ def project_outline(
     return corners if np.isfinite(corners).all() else np.zeros((0, 2))
 
 
-def _enlarge(photo: ColourImage) -> tuple[ColourImage, float]:
+def _enlarge(photo: ColourImage) -> tuple[Canvas, float]:
     zoom = float(max(1, round(_MIN_WIDTH / photo.shape[1])))
     if zoom == 1:
         return photo.copy(), zoom
@@ -99,7 +102,7 @@ def _at(pixel: Scalars, zoom: float) -> tuple[int, int]:
 
 
 def _line(
-    canvas: ColourImage,
+    canvas: Canvas,
     pixels: Pixels,
     zoom: float,
     colour: tuple[int, int, int],
@@ -109,7 +112,7 @@ def _line(
         cv2.line(canvas, _at(start, zoom), _at(end, zoom), colour, thickness, cv2.LINE_AA)
 
 
-def _write(canvas: ColourImage, note: str) -> ColourImage:
+def _write(canvas: Canvas, note: str) -> UInt8[np.ndarray, "higher width 3"]:
     height = max(22, canvas.shape[1] // 45)
     size = height / 36
     strip = np.full((height, canvas.shape[1], 3), 24, np.uint8)

@@ -4,12 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from jaxtyping import Bool, Float
 
 from ..errors import Degenerate, NotEnoughData
 from ..geometry.intersect import intersect_rays_with_plane
 from ..geometry.plane_fit import PlaneFit, fit_plane
 from ..optics import back_project
-from ..types.arrays import Mask, Pixels, Points, Scalars
+from ..types.arrays import Pixels, Points, Vector
 from ..types.camera import Camera
 from ..types.laser import Laser
 from ..types.plane import Plane
@@ -49,11 +50,11 @@ class LaserCalibration:
     """The sheet, in the camera frame; its normal points to + of the laser's axis."""
     stripes: tuple[StripeOnBoard, ...]
     """The stripes that it was calibrated on."""
-    points: tuple[Points, ...]
+    points: tuple[Float[np.ndarray, "_ 3"], ...]
     """Their points in the camera frame [m]."""
-    residuals: tuple[Scalars, ...]
+    residuals: tuple[Float[np.ndarray, "..."], ...]
     """Distance of each point from the sheet [m], signed."""
-    inliers: tuple[Mask, ...]
+    inliers: tuple[Bool[np.ndarray, "..."], ...]
     """Which points the sheet was fitted to."""
     angle_sigma: float
     """Standard deviation of the sheet's direction [rad]."""
@@ -136,13 +137,13 @@ def _turn_to_axis(sheet: Plane) -> Plane:
     return Plane(-sheet.normal, -sheet.distance)
 
 
-def _widths(points: Points) -> Scalars:
+def _widths(points: Points) -> Vector:
     """Give the standard deviation of points along their three main directions [m]."""
     around = points - points.mean(axis=0)
     return np.linalg.svd(around, compute_uv=False) / np.sqrt(len(points))
 
 
-def _angle_sigma(fit: PlaneFit, points: Sequence[Points]) -> float:
+def _angle_sigma(fit: PlaneFit, points: Sequence[Float[np.ndarray, "... 3"]]) -> float:
     """Give the standard deviation of the sheet's direction [rad].
 
     The larger of two: as if each photo told the sheet's place once, with the RMS of all, and the

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from ..errors import Degenerate
-from ..types.arrays import Directions, Scalars
+from ..types.arrays import Directions
 from .board import Chessboard
 from .view import BoardView, as_opencv
 
@@ -88,9 +88,6 @@ def plain_normals(
 
 def spread_of(normals: Directions) -> float:
     """Give the angle [rad] that nine in ten pairs of normals do not exceed."""
-    return float(np.percentile(_pairwise_angles(normals), 90))
-
-
-def _pairwise_angles(normals: Directions) -> Scalars:
     first, second = np.triu_indices(len(normals), 1)
-    return np.arccos(np.clip(np.abs(np.sum(normals[first] * normals[second], axis=1)), 0, 1))
+    cosines = np.abs(np.sum(normals[first] * normals[second], axis=1))
+    return float(np.percentile(np.arccos(np.minimum(cosines, 1.0)), 90))

@@ -1,0 +1,184 @@
+import shutil
+import tomllib
+
+import cv2
+import numpy as np
+import pytest
+
+from murkscan.calibrate import Chessboard, Margin
+from murkscan.calibrate.sheet import locate_on_board
+from murkscan.errors import Degenerate, FormatError, InputError, MissingResult, NotEnoughData
+from murkscan.io.images import write_image
+from murkscan.io.rig_toml import load_rig
+from murkscan.survey.calibrate import calibrate_camera_from_photos, calibrate_laser_from_photos
+from murkscan.types.camera import Camera
+from murkscan.types.pose import Pose
+
+BOARD = Chessboard(9, 6, 0.03)
+GREEN_BOARD = Chessboard(8, 6, 0.04)
+GREEN_MARGIN = Margin(left=0.115, right=0.08, top=0.06, bottom=0.065)
+"""The white paper of that board beyond its squares, as far as the photos show it."""
+CAMERA = Camera((320, 240), (350.0, 350.0), (159.5, 119.5))
+TILTS = [(30, 0), (-30, 5), (0, 30), (5, -30), (20, 20), (-20, -20), (20, -20)]
+
+
+def render(tilt):
+    """Photograph the board: the level of each pixel's square, of three by three rays."""
+    turns = [
+        cv2.Rodrigues(np.radians(a) * axis)[0] for a, axis in zip(tilt, np.eye(3), strict=False)
+    ]
+    turned = turns[0] @ turns[1]
+    place = np.array([0.0, 0.0, 0.45]) - turned @ BOARD.points().mean(axis=0)
+    v, u = np.mgrid[:720, :960]
+    pixels = (np.stack([u.ravel(), v.ravel()], axis=1) + 0.5) / 3 - 0.5
+    pose = Pose(turned, place)
+    x, y, _ = (pose.inverse() @ locate_on_board(CAMERA, pixels, pose)).T / BOARD.square
+    inside = (x > -1) & (x < BOARD.columns) & (y > -1) & (y < BOARD.rows)
+    dark = inside & ((np.floor(x) + np.floor(y)) % 2 == 0)
+    level = np.where(dark, 30.0, 200.0).reshape(240, 3, 320, 3).mean(axis=(1, 3))
+    return np.repeat(level[:, :, None], 3, axis=2).astype(np.uint8)
+
+
+@pytest.fixture(scope="module")
+def photos(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("photos")
+    for number, tilt in enumerate(TILTS):
+        write_image(folder / f"photo{number}.png", render(tilt))
+    return folder
+
+
+@pytest.fixture
+def own_photos(photos, tmp_path):
+    return shutil.copytree(photos, tmp_path / "own")
+
+
+def test_the_camera_is_written_and_every_photo_drawn(photos, tmp_path):
+    rig = tmp_path / "rig.toml"
+    rig.write_text("# my rig\nformat = 1\nwavelength_nm = 450 # blue\n", "utf-8")
+    result = calibrate_camera_from_photos(photos, BOARD, rig)
+    text = rig.read_text("utf-8")
+    assert "# my rig" in text
+    assert "450 # blue" in text
+    # Corners to 0.03 px in seven views tell the focal length to some 0.3 %.
+    assert load_rig(rig).camera.focal_length == pytest.approx((350, 350), rel=0.01)
+    record = tomllib.loads(text)["calibration"]["camera"]
+    assert record["views"] == len(TILTS)
+    assert "7 views are few" in record["verdict"]
+    drawn = sorted(file.name for file in (tmp_path / "calibrate" / "camera").iterdir())
+    assert drawn == [f"photo{number}.jpg" for number in range(len(TILTS))]
+    assert result.num_photos == len(TILTS)
+
+
+def test_progress_is_told_for_every_photo(photos, tmp_path):
+    told = []
+    calibrate_camera_from_photos(
+        photos, BOARD, tmp_path / "rig.toml", progress=lambda *step: told.append(step)
+    )
+    assert ("find boards", len(TILTS), len(TILTS)) in told
+    assert ("draw", len(TILTS), len(TILTS)) in told
+
+
+def test_a_corrupt_photo_is_skipped_and_told(own_photos, tmp_path):
+    (own_photos / "photo3.png").write_bytes(b"no picture")
+    result = calibrate_camera_from_photos(own_photos, BOARD, tmp_path / "rig.toml")
+    assert result.num_photos == len(TILTS) - 1
+    assert list(result.skipped) == ["photo3.png"]
+    assert "photo3.png" in result.skipped["photo3.png"]
+
+
+def test_a_photo_without_the_board_is_counted(own_photos, tmp_path):
+    write_image(own_photos / "wall.png", np.full((240, 320, 3), 90, np.uint8))
+    result = calibrate_camera_from_photos(own_photos, BOARD, tmp_path / "rig.toml")
+    assert result.without_board == ("wall.png",)
+
+
+def test_a_photo_of_another_size_is_refused_by_name(own_photos, tmp_path):
+    write_image(own_photos / "zoomed.png", np.zeros((480, 640, 3), np.uint8))
+    with pytest.raises(InputError, match=r"zoomed\.png is 640 x 480 px but photo0\.png is 320"):
+        calibrate_camera_from_photos(own_photos, BOARD, tmp_path / "rig.toml")
+
+
+def test_squares_counted_for_corners_are_answered_with_the_right_board(photos, tmp_path):
+    with pytest.raises(NotEnoughData, match="use --board 9x6; INNER corners count"):
+        calibrate_camera_from_photos(photos, Chessboard(10, 7, 0.03), tmp_path / "rig.toml")
+    assert not (tmp_path / "rig.toml").exists()
+
+
+def test_a_board_that_is_never_found_is_told_with_counts_and_cure(tmp_path):
+    folder = tmp_path / "walls"
+    for number in range(3):
+        write_image(folder / f"{number}.png", np.full((240, 320, 3), 90, np.uint8))
+    with pytest.raises(NotEnoughData, match=r"None of the 3 photos .* whole 9x6 board") as refusal:
+        calibrate_camera_from_photos(folder, BOARD, tmp_path / "rig.toml")
+    assert "INNER corners" in str(refusal.value)
+
+
+def test_folders_without_photos_are_refused(tmp_path):
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(FormatError, match="holds no pictures"):
+        calibrate_camera_from_photos(tmp_path / "empty", BOARD, tmp_path / "rig.toml")
+    with pytest.raises(InputError, match="There is no folder or video"):
+        calibrate_camera_from_photos(tmp_path / "nowhere", BOARD, tmp_path / "rig.toml")
+
+
+def test_a_laser_needs_a_camera_first(photos, tmp_path):
+    with pytest.raises(MissingResult, match="calibrate camera` first"):
+        calibrate_laser_from_photos(photos, BOARD, tmp_path / "rig.toml")
+    (tmp_path / "rig.toml").write_text("format = 1\n", "utf-8")
+    with pytest.raises(MissingResult, match="calibrate camera` first"):
+        calibrate_laser_from_photos(photos, BOARD, tmp_path / "rig.toml")
+
+
+def test_photos_without_a_stripe_are_told_with_counts(photos, tmp_path):
+    rig = tmp_path / "rig.toml"
+    calibrate_camera_from_photos(photos, BOARD, rig)
+    before = rig.read_bytes()
+    with pytest.raises(NotEnoughData, match="found it in 0 of 7"):
+        calibrate_laser_from_photos(photos, BOARD, rig)
+    with pytest.raises(InputError, match="has 0 laser"):
+        calibrate_laser_from_photos(photos, BOARD, rig, laser=1)
+    assert rig.read_bytes() == before
+
+
+def test_photos_of_another_camera_are_refused_for_the_laser(photos, own_photos, tmp_path):
+    rig = tmp_path / "rig.toml"
+    calibrate_camera_from_photos(photos, BOARD, rig)
+    write_image(own_photos / "photo0.png", np.zeros((480, 640, 3), np.uint8))
+    with pytest.raises(InputError, match=r"photo0\.png is 640 x 480 px but the rig's camera"):
+        calibrate_laser_from_photos(own_photos, BOARD, rig)
+
+
+def test_the_boards_of_the_stage_are_refused_as_degenerate(data, tmp_path):
+    with pytest.raises(Degenerate, match="all face the camera straight on") as refusal:
+        calibrate_camera_from_photos(
+            data("stage_stairs") / "board", Chessboard(5, 5, 0.005), tmp_path / "rig.toml"
+        )
+    assert "tilted by 20 to 40 degrees" in str(refusal.value)
+    assert len(list((tmp_path / "calibrate" / "camera").iterdir())) == 11
+
+
+def test_the_chessboards_calibrate_to_the_known_rms(data, tmp_path):
+    result = calibrate_camera_from_photos(data("chessboards"), BOARD, tmp_path / "rig.toml")
+    assert len(result.calibration.views) == result.num_photos == 13
+    assert result.calibration.rms <= 0.22
+
+
+def test_the_green_laser_calibrates_to_the_known_sheet(data, tmp_path):
+    rig = tmp_path / "rig.toml"
+    camera = calibrate_camera_from_photos(data("green_laser") / "board", GREEN_BOARD, rig)
+    assert len(camera.calibration.views) == camera.num_photos == 27
+    assert camera.calibration.rms <= 0.16
+    laser = calibrate_laser_from_photos(
+        data("green_laser") / "laser_on_board", GREEN_BOARD, rig, margin=GREEN_MARGIN
+    )
+    found = laser.calibration
+    assert found.rms <= 0.45e-3
+    # The reference plane of the recording's README, from an independent fit.
+    normal, distance = np.array([-0.9057, 0.1395, -0.4004]), 0.1657
+    turn = np.linalg.norm(np.cross(found.sheet.normal, normal / np.linalg.norm(normal)))
+    assert np.degrees(np.arcsin(turn)) <= 0.5
+    points = np.concatenate(found.points)[np.concatenate(found.inliers)]
+    assert np.abs(points @ normal + distance).max() <= 2e-3
+    saved = load_rig(rig).lasers[0]
+    np.testing.assert_allclose(saved.sheet.normal, found.sheet.normal, atol=1e-9)
+    assert (laser.num_photos, len(laser.without_board)) == (61, 16)
