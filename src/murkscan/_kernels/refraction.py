@@ -22,7 +22,7 @@ class Interfaces(NamedTuple):
     """Refractive index inside, and behind each surface; one more than sizes."""
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def _refract(
     dx: float, dy: float, dz: float, nx: float, ny: float, nz: float, ratio: float
 ) -> tuple[float, float, float]:
@@ -32,7 +32,7 @@ def _refract(
     return ratio * dx + bend * nx, ratio * dy + bend * ny, ratio * dz + bend * nz
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def trace_ray(
     dx: float, dy: float, dz: float, interfaces: Interfaces
 ) -> tuple[float, float, float, float, float, float]:
@@ -53,16 +53,18 @@ def trace_ray(
                 (oz + step * dz) / size,
             )
         else:
-            nx, ny, nz = vx, vy, vz
-            cosine = dx * nx + dy * ny + dz * nz
-            gap = size - (x * nx + y * ny + z * nz)
-            step = gap / cosine if cosine > 0.0 else np.nan
+            cosine = dx * vx + dy * vy + dz * vz
+            step = (size - (x * vx + y * vy + z * vz)) / cosine
+            # A ray that never gets to the plane is lost, and with it all that follows.
+            hit = 1.0 if cosine > 0.0 else np.nan
+            nx, ny, nz = vx * hit, vy * hit, vz * hit
+            step *= hit
         x, y, z = x + step * dx, y + step * dy, z + step * dz
         dx, dy, dz = _refract(dx, dy, dz, nx, ny, nz, indices[i] / indices[i + 1])
     return x, y, z, dx, dy, dz
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def trace_rays(directions: np.ndarray, interfaces: Interfaces) -> tuple[np.ndarray, np.ndarray]:
     """Follow unit directions (n 3) from the origin out of the last surface: starts, directions."""
     starts, leaving = np.empty_like(directions), np.empty_like(directions)
@@ -75,7 +77,7 @@ def trace_rays(directions: np.ndarray, interfaces: Interfaces) -> tuple[np.ndarr
     return starts, leaving
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def aim_through_planes(points: np.ndarray, interfaces: Interfaces) -> np.ndarray:
     """Directions (n 3) from the origin whose rays reach the points; NaN inside the last plane.
 
@@ -111,7 +113,7 @@ def aim_through_planes(points: np.ndarray, interfaces: Interfaces) -> np.ndarray
     return aims
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def _sweep(
     turn: float, eccentricity: float, distance: float, interfaces: Interfaces
 ) -> tuple[float, float]:
@@ -135,7 +137,7 @@ def _sweep(
     return angle, slope
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def aim_through_spheres(points: np.ndarray, interfaces: Interfaces) -> np.ndarray:
     """Directions (n 3) from the origin whose rays reach the points; NaN inside the last sphere.
 

@@ -12,7 +12,7 @@ from ..types.plane import Plane
 from ..types.rays import Rays
 from .interfaces import as_triple, interfaces_of
 
-_NUM_ANGLES, _NUM_DEPTHS = 61, 18
+_NUM_ANGLES, _NUM_DEPTHS = 301, 18
 """Grid of points to which the equivalent plane is fitted."""
 
 
