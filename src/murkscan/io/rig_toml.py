@@ -1,99 +1,20 @@
 """rig.toml: what the instrument is. Users write it by hand, `calibrate` writes into it."""
 
-import math
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Any
 
-import numpy as np
 import tomlkit
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, PositiveFloat, ValidationError
-from pydantic import PositiveInt as Count
+from pydantic import ValidationError
 
 from ..errors import FormatError, InputError
 from ..types.camera import Camera
-from ..types.laser import Axis, Laser
-from ..types.plane import Plane
-from ..types.pose import Pose
+from ..types.laser import Laser
 from ..types.rig import Rig
 from .atomic import replacing
+from .rig_as_tables import as_tables as as_tables
+from .rig_as_tables import camera_table, laser_table
+from .rig_tables import RigTable
 from .validation import explain
-
-_Positive = Annotated[PositiveFloat, Field(allow_inf_nan=False)]
-_Vector = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
-
-
-class _Table(BaseModel):
-    model_config = ConfigDict(extra="forbid")
-
-
-class _CameraTable(_Table):
-    size: tuple[Count, Count]
-    focal_length: tuple[_Positive, _Positive]
-    principal_point: tuple[FiniteFloat, FiniteFloat]
-    distortion: tuple[FiniteFloat, FiniteFloat, FiniteFloat, FiniteFloat, FiniteFloat] = (
-        0, 0, 0, 0, 0,
-    )  # fmt: skip
-
-    def as_camera(self) -> Camera:
-        return Camera(
-            self.size, self.focal_length, self.principal_point, np.array(self.distortion, float)
-        )
-
-
-class _BaselineAngleTable(_Table):
-    kind: Literal["baseline_angle"]
-    baseline_mm: FiniteFloat
-    angle_deg: FiniteFloat
-    axis: Axis
-
-    def as_laser(self) -> Laser:
-        return Laser.from_baseline_angle(
-            self.baseline_mm / 1e3, math.radians(self.angle_deg), self.axis
-        )
-
-
-class _PlaneTable(_Table):
-    kind: Literal["plane"]
-    normal: _Vector
-    distance_mm: FiniteFloat
-    axis: Axis | None = None
-
-    def as_laser(self) -> Laser:
-        length = np.linalg.norm(self.normal)
-        if length == 0:
-            raise InputError("The normal of a laser's plane has length 0.")
-        sheet = Plane(np.array(self.normal, float) / length, self.distance_mm / 1e3)
-        laser = Laser.from_sheet(sheet)
-        return laser if self.axis is None else Laser(sheet, self.axis)
-
-
-class _MountTable(_Table):
-    translation_mm: _Vector = (0, 0, 0)
-    quaternion_wxyz: tuple[FiniteFloat, FiniteFloat, FiniteFloat, FiniteFloat] = (1, 0, 0, 0)
-
-    def as_pose(self) -> Pose:
-        if not any(self.quaternion_wxyz):
-            raise InputError("The quaternion of the mount is zero.")
-        return Pose.from_quaternion(
-            np.array([self.quaternion_wxyz], float), np.array(self.translation_mm, float) / 1e3
-        )
-
-
-class _RigTable(_Table):
-    format: Literal[1]
-    wavelength_nm: Annotated[float, Field(ge=350, le=1100)] = 532
-    camera: _CameraTable
-    laser: list[Annotated[_BaselineAngleTable | _PlaneTable, Field(discriminator="kind")]] = []
-    mount: _MountTable | None = None
-    calibration: dict[str, Any] = {}
-
-    def as_rig(self) -> Rig:
-        return Rig(
-            camera=self.camera.as_camera(),
-            lasers=tuple(laser.as_laser() for laser in self.laser),
-            wavelength=self.wavelength_nm / 1e9,
-            vehicle_from_camera=None if self.mount is None else self.mount.as_pose(),
-        )
 
 
 def load_rig(path: Path) -> Rig:
@@ -113,27 +34,11 @@ def parse_rig(tables: dict[str, Any], *, name: str) -> Rig:
         FormatError: A key is unknown, missing or out of range; the message names the key.
     """
     try:
-        return _RigTable.model_validate(tables).as_rig()
+        return RigTable.model_validate(tables).as_rig()
     except ValidationError as error:
         raise FormatError(f"{name}: {explain(error)}") from error
     except InputError as error:
         raise FormatError(f"{name}: {error}") from error
-
-
-def as_tables(rig: Rig) -> dict[str, Any]:
-    """Give a rig as the tables of a rig file; `parse_rig` inverts it."""
-    tables: dict[str, Any] = {
-        "format": 1,
-        "wavelength_nm": round(rig.wavelength * 1e9, 3),
-        "camera": _camera_table(rig.camera),
-        "laser": [_laser_table(laser) for laser in rig.lasers],
-    }
-    if rig.vehicle_from_camera is not None:
-        tables["mount"] = {
-            "translation_mm": (rig.vehicle_from_camera.translation * 1e3).tolist(),
-            "quaternion_wxyz": rig.vehicle_from_camera.as_quaternion()[0].tolist(),
-        }
-    return tables
 
 
 def save_rig(path: Path, rig: Rig) -> None:
@@ -159,7 +64,7 @@ def save_camera(path: Path, camera: Camera, *, wavelength: float, record: dict[s
     """
     document = _read(path) if path.exists() else tomlkit.parse("format = 1\n")
     document.setdefault("wavelength_nm", round(wavelength * 1e9, 3))
-    document.setdefault("camera", tomlkit.table()).update(_camera_table(camera))
+    document.setdefault("camera", tomlkit.table()).update(camera_table(camera))
     document.setdefault("calibration", tomlkit.table(True))["camera"] = record
     _write(path, document)
 
@@ -185,7 +90,7 @@ def save_laser(path: Path, laser: Laser, number: int, *, record: dict[str, Any])
             f"not {number}."
         )
     table = tomlkit.table()
-    table.update(_laser_table(laser))
+    table.update(laser_table(laser))
     table.add(tomlkit.nl())
     if number == len(lasers):
         lasers.append(table)
@@ -196,24 +101,6 @@ def save_laser(path: Path, laser: Laser, number: int, *, record: dict[str, Any])
     )
     of_lasers[str(number)] = record
     _write(path, document)
-
-
-def _camera_table(camera: Camera) -> dict[str, Any]:
-    return {
-        "size": list(camera.size),
-        "focal_length": _rounded(camera.focal_length, 9),
-        "principal_point": _rounded(camera.principal_point, 9),
-        "distortion": _rounded(camera.distortion, 12),
-    }
-
-
-def _laser_table(laser: Laser) -> dict[str, Any]:
-    return {
-        "kind": "plane",
-        "normal": laser.sheet.normal.tolist(),
-        "distance_mm": laser.sheet.distance * 1e3,
-        "axis": laser.axis,
-    }
 
 
 def _read(path: Path) -> tomlkit.TOMLDocument:
@@ -230,7 +117,3 @@ def _write(path: Path, document: tomlkit.TOMLDocument) -> None:
     parse_rig(tomlkit.parse(text).unwrap(), name=str(path))
     with replacing(path) as aside:
         aside.write_text(text, "utf-8")
-
-
-def _rounded(numbers: Any, digits: int) -> list[float]:
-    return [round(float(number), digits) for number in numbers]

@@ -1,0 +1,104 @@
+"""A rig as the tables of rig.toml; what `rig_tables` inverts."""
+
+from typing import Any
+
+import numpy as np
+
+from ..types.arrays import Vector
+from ..types.camera import Camera
+from ..types.laser import Fan, Laser
+from ..types.port import FlatPort, Port
+from ..types.rig import Rig
+from ..types.water import Water
+
+
+def as_tables(rig: Rig) -> dict[str, Any]:
+    """Give a rig as the tables of a rig file."""
+    tables: dict[str, Any] = {
+        "format": 1,
+        "wavelength_nm": round(rig.wavelength * 1e9, 3),
+        "camera": camera_table(rig.camera),
+        "laser": [laser_table(laser) for laser in rig.lasers],
+    }
+    if rig.water is not None:
+        tables["water"] = _water_table(rig.water)
+    if rig.vehicle_from_camera is not None:
+        tables["mount"] = {
+            "translation_mm": (rig.vehicle_from_camera.translation * 1e3).tolist(),
+            "quaternion_wxyz": rig.vehicle_from_camera.as_quaternion()[0].tolist(),
+        }
+    return tables
+
+
+def camera_table(camera: Camera) -> dict[str, Any]:
+    """Give [camera], with [camera.port] where there is one."""
+    table: dict[str, Any] = {
+        "size": list(camera.size),
+        "focal_length": _rounded(camera.focal_length, 9),
+        "principal_point": _rounded(camera.principal_point, 9),
+        "distortion": _rounded(camera.distortion, 12),
+    }
+    if camera.port is not None:
+        table["port"] = _port_table(camera.port, np.zeros(3))
+    return table
+
+
+def laser_table(laser: Laser) -> dict[str, Any]:
+    """Give one [[laser]], with [laser.port] where there is one."""
+    if isinstance(laser.sheet, Fan):
+        return _fan_table(laser.sheet) | {"axis": laser.axis} | _laser_port(laser.sheet)
+    return {
+        "kind": "plane",
+        "normal": laser.sheet.normal.tolist(),
+        "distance_mm": laser.sheet.distance * 1e3,
+        "axis": laser.axis,
+    }
+
+
+def _fan_table(fan: Fan) -> dict[str, Any]:
+    return {
+        "kind": "fan",
+        "origin_mm": _rounded(fan.origin * 1e3, 9),
+        "direction": fan.direction.tolist(),
+        "tangent": fan.tangent.tolist(),
+        "half_angle_deg": round(float(np.degrees(fan.half_angle)), 12),
+    }
+
+
+def _laser_port(fan: Fan) -> dict[str, Any]:
+    return {} if fan.port is None else {"port": _port_table(fan.port, fan.origin)}
+
+
+def _port_table(port: Port, origin: Vector) -> dict[str, Any]:
+    if not isinstance(port, FlatPort):
+        return {
+            "kind": "dome",
+            "radius_mm": round(port.radius * 1e3, 9),
+            "thickness_mm": round(port.thickness * 1e3, 9),
+            "glass_index": port.index,
+            "centre_mm": _rounded((port.centre + origin) * 1e3, 9),
+        }
+    layers = [
+        {"thickness_mm": round(layer.thickness * 1e3, 9), "index": layer.index}
+        for layer in port.layers
+    ]
+    face = {"normal": port.normal.tolist(), "distance_mm": round(port.distance * 1e3, 9)}
+    if len(layers) == 1:
+        only = layers[0]
+        glass = {"thickness_mm": only["thickness_mm"], "glass_index": only["index"]}
+        return {"kind": "flat"} | face | glass
+    return {"kind": "layers"} | face | {"layer": layers}
+
+
+def _water_table(water: Water) -> dict[str, Any]:
+    if water.index is not None:
+        return {"index": water.index}
+    return {
+        "temperature_c": water.temperature_c,
+        "salinity_psu": water.salinity_psu,
+        "depth_m": water.depth,
+    }
+
+
+def _rounded(numbers: Any, digits: int) -> list[float]:
+    return [round(float(number), digits) for number in numbers]
