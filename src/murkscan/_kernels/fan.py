@@ -73,24 +73,30 @@ def _moment(t: float, ray: _Ray, camera_ray: _Ray) -> float:
 def _meeting(
     ends: tuple[float, float, float, float], camera_ray: _Ray, fan: Fan, interfaces: Interfaces
 ) -> _Ray:
-    """The fan's ray that meets the camera's, between two t with moments: regula falsi.
+    """The fan's ray that meets the camera's, between two t with moments of opposite sign.
 
-    The Illinois rule halves the moment of the end that stays, so that both ends close in.
+    Inverse quadratic interpolation: the moment is almost linear in t, so that three rays will do.
+    Bisection where it leaves the bracket.
     """
     low, at_low, high, at_high = ends
-    ray, t = _fan_ray(low, fan, interfaces), low
+    t = (low * at_high - high * at_low) / (at_high - at_low)
+    ray = _fan_ray(t, fan, interfaces)
     for _ in range(60):
-        new = (low * at_high - high * at_low) / (at_high - at_low)
-        step, t = abs(new - t), new
-        ray = _fan_ray(t, fan, interfaces)
-        at_new = _moment(t, ray, camera_ray)
-        if step < 1e-10 or at_new == 0.0 or not np.isfinite(at_new):
-            break
-        if at_new * at_high < 0.0:
-            low, at_low = high, at_high
+        at_t = _moment(t, ray, camera_ray)
+        new = (
+            low * at_high * at_t / ((at_low - at_high) * (at_low - at_t))
+            + high * at_low * at_t / ((at_high - at_low) * (at_high - at_t))
+            + t * at_low * at_high / ((at_t - at_low) * (at_t - at_high))
+        )
+        if at_t * at_low > 0.0:
+            low, at_low = t, at_t
         else:
-            at_low *= 0.5
-        high, at_high = new, at_new
+            high, at_high = t, at_t
+        new = new if low < new < high else 0.5 * (low + high)
+        step, t = abs(new - t), new
+        if step < 1e-10 or at_t == 0.0 or not np.isfinite(at_t):
+            break
+        ray = _fan_ray(t, fan, interfaces)
     return ray
 
 
