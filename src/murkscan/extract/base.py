@@ -8,6 +8,7 @@ from ..types.background import Background
 from ..types.frame import Frame
 from ..types.rig import Rig
 from ..types.stripe import Stripe
+from .noise import learn_noise
 
 
 class AbstractExtractor(abc.ABC):

@@ -1,0 +1,73 @@
+"""From centres in scan lines to the stripe of a frame."""
+
+import numpy as np
+
+from ..types.arrays import Indices, Scalars
+from ..types.frame import Frame
+from ..types.laser import Axis
+from ..types.stripe import Stripe
+
+_APART = 1.0
+"""Centres of one scan line that are closer than this are one centre, found twice [px]."""
+_MOST = 256
+"""Branches of a scan line that have a number."""
+
+
+def assemble_stripe(
+    frame: Frame,
+    axis: Axis,
+    laser: int,
+    *,
+    lines: Indices,
+    centres: Scalars,
+    sigma: Scalars,
+    signal: Scalars,
+) -> Stripe:
+    """Order centres by scan line, number their branches, and give them in full-frame pixels.
+
+    Args:
+        frame: The frame that they were found in.
+        axis: The camera axis along which the laser sits; for y, scan lines are image columns.
+        laser: Number of the laser in the rig.
+        lines: Scan line of each centre, in pixels of the image.
+        centres: Position along the scan line [px of the image]; rows with NaN are left out.
+        sigma: Standard deviation of each centre [px of the image].
+        signal: Height of the stripe above its surroundings [grey levels].
+    """
+    order = np.lexsort((-signal, lines))
+    order = order[np.isfinite(centres[order])]
+    branch = _number_branches(lines[order], centres[order])
+    order, branch = order[branch < _MOST], branch[branch < _MOST]
+    lines, centres, n = lines[order], centres[order], len(order)
+    if axis == "y":
+        pixels = np.stack([lines.astype(float), frame.as_full_rows(centres)], axis=1)
+    else:
+        pixels = np.stack([centres, frame.as_full_rows(lines.astype(float))], axis=1)
+    stretch = frame.row_step if axis == "y" else 1
+    return Stripe(
+        frame=np.full(n, frame.index, np.uint32),
+        time=np.full(n, float(frame.time)),
+        pixels=pixels,
+        sigma=(sigma[order] * stretch).astype(np.float32),
+        signal=signal[order].astype(np.float32),
+        posterior=np.ones(n, np.float32),
+        laser=np.full(n, laser, np.uint8),
+        branch=branch.astype(np.uint8),
+    )
+
+
+def _number_branches(lines: Indices, centres: Scalars) -> Indices:
+    """Count up within each scan line; a centre found twice gets a number out of range."""
+    branch = np.zeros(len(lines), np.int64)
+    kept: list[float] = []
+    # Few scan lines have more than one centre: only these are looked at one by one.
+    several = np.flatnonzero(np.diff(lines, prepend=-1) == 0)
+    for i in several:
+        if branch[i - 1] == 0 and lines[i - 1] != (lines[i - 2] if i > 1 else -1):
+            kept = [float(centres[i - 1])]
+        if min(abs(centres[i] - other) for other in kept) < _APART:
+            branch[i] = _MOST
+        else:
+            branch[i] = len(kept)
+            kept.append(float(centres[i]))
+    return branch

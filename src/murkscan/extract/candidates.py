@@ -1,0 +1,67 @@
+"""Where a stripe may be: peaks that stand out of the noise; each extractor then measures them."""
+
+import math
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from .._kernels.peaks import find_peaks
+from ..errors import InputError
+from ..types.arrays import Image
+from ..types.background import Background
+from ..types.frame import Frame
+from ..types.rig import Rig
+from ..types.stripe import Stripe
+from .assemble import assemble_stripe
+
+_MOST = 16
+"""Peaks a scan line, on average, up to which a frame is looked at: more of them are no stripe."""
+_CLEAR = 5
+"""Pixels beyond the foot of a stripe that show what surrounds it."""
+
+Measure = Callable[[Image, np.ndarray, bool], np.ndarray]
+"""From an image, peaks (n 2: scan line, position) and whether scan lines are columns, to centre,
+sigma and signal (n 3); NaN where there is no stripe at a peak."""
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """How much a peak must stand out."""
+
+    half_width: float
+    """Half the width of a stripe, at its foot [px]."""
+    min_height: float
+    """Grey levels by which a peak must rise above both of its sides."""
+    min_contrast: float
+    """The same, in standard deviations of the noise."""
+
+    def __post_init__(self) -> None:
+        """Refuse settings with which no peak, or every pixel, would be found."""
+        if self.half_width < 1 or self.min_height < 1 or self.min_contrast < 0:
+            raise InputError(
+                f"A stripe needs half_width ≥ 1 px, min_height ≥ 1 grey level and "
+                f"min_contrast ≥ 0, got {self.half_width:g}, {self.min_height:g} and "
+                f"{self.min_contrast:g}."
+            )
+
+    def extract(
+        self,
+        frames: Iterable[Frame],
+        rig: Rig,
+        background: Background,
+        laser: int,
+        measure: Measure,
+    ) -> Iterator[Stripe]:
+        """Find the peaks of each frame, measure them, and assemble its stripe."""
+        axis = rig.lasers[laser].axis
+        rise = math.ceil(max(self.min_height, self.min_contrast * background.noise))
+        reach = math.ceil(self.half_width) + _CLEAR
+        for frame in frames:
+            image, down = np.ascontiguousarray(frame.image), axis == "y"
+            num_lines = image.shape[1 if down else 0]
+            peaks = find_peaks(image, down, rise, reach, _MOST * num_lines)
+            centres, sigma, signal = measure(image, peaks, down).T
+            yield assemble_stripe(
+                frame, axis, laser, lines=peaks[:, 0], centres=centres, sigma=sigma, signal=signal
+            )
