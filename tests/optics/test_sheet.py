@@ -53,11 +53,8 @@ def test_what_the_laser_lights_the_camera_measures(laser_port, camera_port, angl
     rays = back_project(camera, project(camera, lit, WATER), WATER)
     if np.isfinite(rays.directions).all():
         met = intersect_rays_with_sheet(rays, Laser.from_sheet(fan), WATER)
-        # A ray of the camera that grazes a bent sheet meets it twice, and the nearer point counts.
-        if met[0, 2] > lit[0, 2] - 0.05:
-            np.testing.assert_allclose(met, lit, atol=1e-8)
-        else:
-            assert abs(distance_to_sheet(met, Laser.from_sheet(fan), WATER)[0]) < 1e-8
+        # The iteration ends at 1e-10 in the tangent of the fan's angle; a slant makes it ten times.
+        np.testing.assert_allclose(met, lit, atol=1e-8)
 
 
 @pytest.mark.parametrize("name", LASER_PORTS)
