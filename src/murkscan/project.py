@@ -14,6 +14,7 @@ import numpy as np
 from .errors import InputError, MissingResult
 from .io.json_files import load_json, save_json
 from .io.mesh_files import load_mesh, save_mesh
+from .io.mlp import save_frames
 from .io.parquet import load_profile, load_stripe, save_profile, save_stripe
 from .io.ply import load_cloud, save_cloud
 from .io.poses import load_poses, save_poses
@@ -141,6 +142,14 @@ class Project:
         for file in sorted((self.root / "extract/frames").glob("*.json")):
             yield int(file.stem), load_json(file)
 
+    def load_frame_times(self) -> FrameTimes:
+        """Read which frames a finished extract has seen, with or without a stripe."""
+        self.finished("extract")
+        notes = [note for _, note in self.load_stripe_notes()]
+        frames = [index for note in notes for index in note["frames"]]
+        times = [time for note in notes for time in note["times"]]
+        return FrameTimes(np.array(frames, np.uint32), np.array(times, float))
+
     def save_profile_part(self, part: int, profile: Profile) -> None:
         """Write one part of triangulate."""
         save_profile(self._part("triangulate/profiles", part, "parquet"), profile)
@@ -173,6 +182,10 @@ class Project:
     def save_cloud(self, cloud: PointCloud) -> None:
         """Write cloud/cloud.ply."""
         save_cloud(self.root / "cloud/cloud.ply", cloud)
+
+    def save_frames(self, cloud: PointCloud) -> None:
+        """Write one cloud a frame, cloud/frames/*.ply, and cloud/frames.mlp that opens them all."""
+        save_frames(self.root / "cloud", cloud)
 
     def load_cloud(self) -> PointCloud:
         """Read the cloud of a finished cloud stage."""

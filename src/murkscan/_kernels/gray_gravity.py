@@ -9,7 +9,7 @@ _SIDE = 5
 
 @njit(cache=True, nogil=True, inline="always")
 def _side_means(scan: np.ndarray, low: int, high: int) -> tuple[float, float, int]:
-    """Mean levels of the first and the last pixels of a stretch, and how many pixels they are of."""
+    """Mean levels of the first and of the last pixels of a stretch, and how many each is of."""
     count = max(min(_SIDE, (high - low) // 3), 1)
     left, right = 0.0, 0.0
     for k in range(count):
@@ -26,7 +26,7 @@ def weigh_peaks(
 
     The background is the line through the mean levels on both sides of the window; the foot lies
     above it by a share of the peak's height. The window ends where the stripe first sinks below its
-    foot: there a weight is zero, so that where exactly it ends does not pull the centre.
+    foot, between two pixels.
 
     Scan lines are image columns if `down`, otherwise image rows. Gives centre, its standard
     deviation, height over background, one peak a row (n 3); NaN where nothing rises above the foot.
@@ -43,15 +43,21 @@ def weigh_peaks(
         height = scan[peak] - base
         mass, moment, spread = 0.0, 0.0, 0.0
         for way in (-1, 1):
-            v = peak if way > 0 else peak - 1
-            while low <= v < high and abs(v - peak) <= half_width:
-                weight = scan[v] - base - slope * (v - peak) - foot * height
-                if weight <= 0:
-                    break
-                mass += weight
-                moment += weight * (v - peak)
-                spread += (v - peak) ** 2
-                v += way
+            reached, weight = 0, (1.0 - foot) * height
+            while reached < half_width and weight > 0:
+                v = peak + way * (reached + 1)
+                beyond = -1.0
+                if low <= v < high:
+                    beyond = scan[v] - base - slope * (v - peak) - foot * height
+                # Between pixels the stripe is a straight line: this piece of it is a trapezium, or
+                # a triangle where it ends. Whole pixels would pull the centre to their middles.
+                share = 1.0 if beyond > 0 else weight / (weight - beyond)
+                near, far = 0.5 * share * weight, 0.5 * share * max(beyond, 0.0)
+                at = way * (reached + (0.0 if beyond > 0 else share / 3))
+                mass += near + far
+                moment += near * at + far * way * (reached + 1)
+                spread += reached**2
+                reached, weight = reached + 1, beyond
         if mass > 0:
             shift = moment / mass
             # How far the background's slope is uncertain, and how far that moves the centre.

@@ -32,7 +32,7 @@ class GrayGravity(AbstractExtractor):
 
     half_width: float = 12.0
     """Half the widest window [px]: more than half the stripe at its foot."""
-    foot: float = 0.2
+    foot: float = 0.25
     """Share of the peak's height that counts as its foot, and not as stripe."""
     min_height: float = 10.0
     """Grey levels by which a peak must rise above both of its sides."""

@@ -70,4 +70,8 @@ def _range_slope(
     shift = _STEP * (np.arange(2) == "xy".index(rig.lasers[laser].axis))
     ranges = np.linalg.norm(points, axis=1)
     shifted = np.linalg.norm(method.locate(pixels + shift, rig, laser), axis=1)
+    # At the very edge of the sheet the shifted ray may miss it: there the other side is taken.
+    missed = np.isnan(shifted) & np.isfinite(ranges)
+    if missed.any():
+        shifted[missed] = np.linalg.norm(method.locate(pixels[missed] - shift, rig, laser), axis=1)
     return np.abs(shifted - ranges) / _STEP

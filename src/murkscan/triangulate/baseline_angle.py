@@ -29,11 +29,16 @@ class BaselineAngle(AbstractTriangulation):
         """Give the point that each pixel sees; see `AbstractTriangulation.locate`.
 
         Raises:
-            InputError: The sheet is turned about the optical axis, so that no b and θ describe it.
+            InputError: The sheet is turned about the optical axis, so that no b and θ describe it,
+                or there is a window before the camera or the laser.
         """
         source = rig.lasers[laser]
         along = "xy".index(source.axis)
-        if abs(source.sheet.normal[1 - along]) > _TURNED:
+        if rig.camera.port is not None:
+            raise InputError(
+                "Equation (4) knows no window before the camera; use --method ray-sheet."
+            )
+        if abs(source.as_plane().normal[1 - along]) > _TURNED:
             raise InputError(
                 f"Laser {laser} is turned about the optical axis, so equation (4) does not hold "
                 "for it; use --method ray-sheet."
