@@ -51,8 +51,6 @@ def hull_scene(*, num_frames: int = 250, noise: float = 0.0, seed: int = 0) -> S
 
 def hull_rig() -> Rig:
     """Make the rig of the demo: its sheet crosses the optical axis at 0.5 m."""
-    camera = Camera(
-        size=(720, 576), focal_length=(554.0, 554.0), principal_point=(359.5, 287.5)
-    )
+    camera = Camera(size=(720, 576), focal_length=(554.0, 554.0), principal_point=(359.5, 287.5))
     laser = Laser.from_baseline_angle(0.25, math.atan2(0.5, 0.25), "y")
     return Rig(camera, (laser,), 532e-9)

@@ -7,33 +7,25 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
-from ..types.arrays import FrameNumbers, Pixels, Points, Ratios, Scalars, SmallNumbers
+from ..types.arrays import Pixels, Points, Scalars
 from ..types.frame import Frame
 from ..types.pose import Pose
+from ..types.true_stripe import TrueStripe
 from .scene import Light, Scene
-from .stripes import Crossings, ScanLines, as_pixels, find_crossings, trace_scan_lines
+from .stripes import (
+    Crossings,
+    ScanLines,
+    as_pixels,
+    find_crossings,
+    laser_position,
+    trace_scan_lines,
+)
 from .truth import surface_normals
 
 _REACH = 6.0
 """Standard deviations of the stripe beyond which it is dark: below 1e-5 of a grey level."""
 _WIDEST = 4.0
 """How much wider than across itself the stripe may be along its scan line, at most."""
-
-
-@dataclass(frozen=True, eq=False)
-class TrueStripe:
-    """True centres of the stripe in one frame; one a row, none where no stripe is seen."""
-
-    frame: FrameNumbers
-    """Index of the frame."""
-    laser: SmallNumbers
-    """Number of the laser in the rig."""
-    pixels: Pixels
-    """Projection of the sheet's middle on the surface [px]."""
-    points: Points
-    """The same on the surface, in the world frame [m]."""
-    signal: Ratios
-    """Peak of the stripe [grey levels]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +61,7 @@ def simulate_frames(scene: Scene, start: int = 0) -> Iterator[SimulatedFrame]:
             pixels = as_pixels(scan_lines.laser.axis, found.lines, found.positions)
             parts.append(_as_truth(index, number, pixels, points, peaks))
         frame = Frame(_expose(light, scene, index), index, float(scene.times[index]))
-        yield SimulatedFrame(frame, _concatenate(parts))
+        yield SimulatedFrame(frame, TrueStripe.concatenate(parts))
 
 
 def _pose_at(scene: Scene, index: int) -> Pose:
@@ -85,12 +77,10 @@ def _shade(
     axis = "xy".index(scan_lines.laser.axis)
     normals = surface_normals(scene.surface, points[:, 0], points[:, 1])
     normals = normals @ world_from_camera.rotation  # world to camera axes
-    source = np.zeros(3)
-    source[axis] = -scan_lines.laser.as_baseline_angle()[0]
-    to_laser = source - found.points
+    to_laser = laser_position(scan_lines.laser) - found.points
     cosine = np.einsum("ij,ij->i", normals, to_laser) / np.linalg.norm(to_laser, axis=1)
     x, y, z = found.points.T
-    tangent = np.cross(normals, scan_lines.laser.sheet.normal)
+    tangent = np.cross(normals, scan_lines.laser.as_plane().normal)
     moved = scan_lines.camera.focal_length * (
         tangent[:, :2] - np.stack([x, y], axis=1) / z[:, None] * tangent[:, 2:]
     )
@@ -130,21 +120,11 @@ def _expose(light: Float[np.ndarray, "h w"], scene: Scene, index: int) -> np.nda
     return np.clip(np.rint(light), 0, 255).astype(np.uint8)
 
 
-def _as_truth(
-    index: int, laser: int, pixels: Pixels, points: Points, peaks: Scalars
-) -> TrueStripe:
+def _as_truth(index: int, laser: int, pixels: Pixels, points: Points, peaks: Scalars) -> TrueStripe:
     return TrueStripe(
         frame=np.full(len(pixels), index, np.uint32),
         laser=np.full(len(pixels), laser, np.uint8),
         pixels=pixels,
         points=points,
         signal=peaks.astype(np.float32),
-    )
-
-
-def _concatenate(parts: list[TrueStripe]) -> TrueStripe:
-    empty = _as_truth(0, 0, np.zeros((0, 2)), np.zeros((0, 3)), np.zeros(0))
-    columns = ("frame", "laser", "pixels", "points", "signal")
-    return TrueStripe(
-        *(np.concatenate([getattr(p, c) for p in [empty, *parts]]) for c in columns)
     )

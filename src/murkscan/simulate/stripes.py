@@ -6,8 +6,8 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from ..errors import InputError
-from ..optics import back_project
-from ..types.arrays import Indices, Pixels, Points, Scalars, Vector
+from ..optics import back_project, intersect_rays_with_sheet
+from ..types.arrays import Indices, Mask, Pixels, Points, Scalars, Vector
 from ..types.camera import Camera
 from ..types.laser import Axis, Laser
 from ..types.pose import Pose
@@ -52,9 +52,12 @@ def trace_scan_lines(camera: Camera, laser: Laser) -> ScanLines:
     """Meet the laser's sheet along every scan line; the same for all frames.
 
     Raises:
-        InputError: The sheet contains the optical centre, so that it is seen edge-on.
+        InputError: The rig has a port, or the sheet contains the optical centre and is seen
+            edge-on.
     """
-    if laser.sheet.distance == 0:
+    if camera.port is not None:
+        raise InputError("This simulation is in air: give a rig without ports.")
+    if laser.as_plane().distance == 0:
         raise InputError(
             "The laser's sheet passes through the camera's optical centre, so it measures nothing. "
             "Give the rig a baseline."
@@ -87,19 +90,20 @@ def find_crossings(
         near, far = np.where(is_in_front, middle, near), np.where(is_in_front, far, middle)
     positions = (near + far) / 2
     points = _points_at(scan_lines, lines, positions)
-    source = np.zeros(3)
-    source["xy".index(scan_lines.laser.axis)] = -scan_lines.laser.as_baseline_angle()[0]
     seen = _is_unhidden(surface, world_from_camera, points, np.zeros(3))
-    seen &= _is_unhidden(surface, world_from_camera, points, source)
+    seen &= _is_unhidden(surface, world_from_camera, points, laser_position(scan_lines.laser))
     return Crossings(lines[seen], positions[seen], points[seen])
 
 
 def meet_sheet(camera: Camera, laser: Laser, pixels: Pixels) -> Points:
-    """Give the point of the sheet that each pixel sees [m]; NaN where that is behind the camera."""
-    directions = back_project(camera, pixels).directions
-    with np.errstate(divide="ignore"):
-        reach = -laser.sheet.distance / (directions @ laser.sheet.normal)
-    return np.where((reach > 0) & np.isfinite(reach), reach, np.nan)[:, None] * directions
+    """Give the point of the sheet that each pixel sees [m]; NaN where it sees none."""
+    return intersect_rays_with_sheet(back_project(camera, pixels), laser)
+
+
+def laser_position(laser: Laser) -> Vector:
+    """Give where the laser is taken to stand: where its sheet cuts the camera's axis [m]."""
+    baseline, _ = laser.as_baseline_angle()
+    return np.where(np.array(["x", "y", "z"]) == laser.axis, -baseline, 0.0)
 
 
 def as_pixels(axis: Axis, lines: Indices, positions: Scalars) -> Pixels:
@@ -136,7 +140,7 @@ def _bracket(behind: Grid) -> tuple[Indices, Indices]:
 
 def _is_unhidden(
     surface: AbstractSurface, world_from_camera: Pose, points: Points, source: Vector
-) -> Bool[np.ndarray, "n"]:
+) -> Mask:
     """Tell which points [m] a straight path from the source reaches; all in the camera frame."""
     # The object is far from the rig: most of the way is free, its last third is looked at.
     share = np.linspace(0.65, 1.0, _SHADOW_SAMPLES, endpoint=False)
