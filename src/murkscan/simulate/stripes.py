@@ -145,4 +145,5 @@ def _is_unhidden(
     # The object is far from the rig: most of the way is free, its last third is looked at.
     share = np.linspace(0.65, 1.0, _SHADOW_SAMPLES, endpoint=False)
     paths = source + share[None, :, None] * (points - source)[:, None, :]
-    return ~(_depth_behind(surface, world_from_camera, paths) > 1e-9).any(axis=1)
+    depths = _depth_behind(surface, world_from_camera, paths)
+    return np.count_nonzero(depths > 1e-9, axis=1) == 0

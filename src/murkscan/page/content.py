@@ -1,0 +1,82 @@
+"""What a page can show: sections, and the blocks in them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar, Literal, final
+
+Cell = str | int | float | None
+"""A table's cell; a number is aligned to the right, None shows as a dash."""
+
+
+@final
+@dataclass(frozen=True)
+class Note:
+    """A sentence or two in plain words."""
+
+    kind: ClassVar[str] = "note"
+    text: str
+    tone: Literal["plain", "good", "warning"] = "plain"
+
+
+@final
+@dataclass(frozen=True)
+class Facts:
+    """A few large numbers with their names, such as ("45 808", "points")."""
+
+    kind: ClassVar[str] = "facts"
+    items: Sequence[tuple[str, str]]
+    """Value with its unit, and what it is."""
+
+
+@final
+@dataclass(frozen=True)
+class Table:
+    """Rows of cells."""
+
+    kind: ClassVar[str] = "table"
+    rows: Sequence[Sequence[Cell]]
+    head: Sequence[str] = ()
+    """Titles of the columns; without them the first cell of each row is its title."""
+
+
+@final
+@dataclass(frozen=True)
+class Figure:
+    """A drawing, as `as_svg` gives it."""
+
+    kind: ClassVar[str] = "figure"
+    svg: str
+    caption: str
+
+
+@final
+@dataclass(frozen=True)
+class Picture:
+    """A picture in a file beside the page."""
+
+    path: str
+    """Relative to the page, with forward slashes."""
+    caption: str
+
+
+@final
+@dataclass(frozen=True)
+class Gallery:
+    """Pictures side by side; the first may stand larger before the others."""
+
+    kind: ClassVar[str] = "gallery"
+    pictures: Sequence[Picture]
+    is_first_large: bool = False
+
+
+Block = Note | Facts | Table | Figure | Gallery
+
+
+@final
+@dataclass(frozen=True)
+class Section:
+    """Blocks under one heading."""
+
+    title: str
+    """Empty for blocks that belong to the page's own title."""
+    blocks: Sequence[Block]

@@ -1,0 +1,113 @@
+"""The page that tells how a scan went."""
+
+from collections.abc import Sequence
+
+from ..page import Block, Facts, Gallery, Note, Picture, Section, Table, format_cell, render_page
+from .charts import depth_chart, points_chart, signal_chart
+from .spread import Spread
+from .summary import ScanSummary
+from .words import describe_length, describe_range, rig_rows, setting_rows
+
+_SKIPS_SHOWN = 50
+"""Rows of the table of skipped frames, at most; report.json has them all."""
+
+
+def as_html(summary: ScanSummary) -> str:
+    """Make report/index.html."""
+    sections = [Section("", _headline(summary))]
+    if summary.pictures:
+        pictures = [Picture(shown.path, shown.caption) for shown in summary.pictures]
+        sections.append(Section("Pictures", [Gallery(pictures, is_first_large=True)]))
+    if summary.num_points:
+        sections += [
+            Section("Over time", _charts(summary)),
+            Section("Numbers", [_spreads(summary)]),
+        ]
+    if summary.recorded.skips:
+        sections.append(Section("Skipped frames", _skips(summary)))
+    sections += [
+        Section("Rig", [Table(rig_rows(summary.rig))]),
+        Section("Settings", [Table(list(setting_rows(summary.settings)))]),
+        Section("Versions", [Table(list(summary.versions.items()))]),
+    ]
+    if summary.durations:
+        times = [(name, f"{seconds:.1f} s") for name, seconds in summary.durations.items()]
+        sections.append(Section("Time taken", [Table(times)]))
+    return render_page("Scan report", sections, subtitle=summary.recorded.name)
+
+
+def _headline(summary: ScanSummary) -> list[Block]:
+    model, (width, height) = summary.model, summary.recorded.size
+    facts = [
+        (format_cell(model.points), "points in the cloud"),
+        (format_cell(model.faces), "triangles"),
+        (format_cell(summary.num_frames), f"frames read, {width} × {height} px"),
+        (format_cell(summary.num_empty), "frames without a stripe"),
+        (format_cell(len(summary.recorded.skips)), "frames skipped"),
+        (format_cell(model.outliers), "outliers taken out"),
+    ]
+    if summary.num_points:
+        facts.append((describe_range(summary.depth), "depth range"))
+    if model.size is not None:
+        size = " × ".join(f"{1e3 * edge:.0f}" for edge in model.size)
+        facts.append((f"{size} mm", "extent along x, y, z"))
+    return [*_verdict(summary), Facts(facts)]
+
+
+def _verdict(summary: ScanSummary) -> list[Block]:
+    """Say in plain words how the scan went."""
+    frames, empty, skipped = summary.num_frames, summary.num_empty, len(summary.recorded.skips)
+    if summary.num_points == 0:
+        return [
+            Note(
+                f"There is no stripe in this recording: none of its {format_cell(frames)} frames "
+                "shows one, so there is no cloud and no surface. Look at the pictures in "
+                "extract/overlay: is the laser on, is the rig the one that recorded this, is the "
+                "extractor's threshold below the line's brightness?",
+                "warning",
+            )
+        ]
+    notes: list[Block] = [
+        Note(
+            f"The laser line was found in {format_cell(frames - empty)} of {format_cell(frames)} "
+            f"frames and gave {format_cell(summary.num_points)} points."
+        )
+    ]
+    if skipped:
+        text = f"{format_cell(skipped)} frames could not be read; the reasons stand below."
+        notes.append(Note(text, "warning"))
+    return notes
+
+
+def _charts(summary: ScanSummary) -> list[Block]:
+    label = "time [s]" if summary.recorded.is_timed else "picture"
+    return [
+        draw(summary.timeline, time_label=label)
+        for draw in (signal_chart, points_chart, depth_chart)
+    ]
+
+
+def _spreads(summary: ScanSummary) -> Table:
+    lengths = (
+        ("spacing along the stripe", summary.across),
+        ("spacing along the motion", summary.along),
+        ("depth (z)", summary.depth),
+        ("standard deviation along the ray", summary.sigma),
+    )
+    rows = [(name, *map(describe_length, _figures(spread))) for name, spread in lengths]
+    levels = ("–" if n is None else f"{n:.1f}" for n in _figures(summary.signal))
+    rows.append(("signal [grey levels]", *levels))
+    return Table(rows, head=("", "smallest", "5 %", "median", "95 %", "largest"))
+
+
+def _figures(spread: Spread) -> Sequence[float | None]:
+    return spread.smallest, spread.low, spread.median, spread.high, spread.largest
+
+
+def _skips(summary: ScanSummary) -> list[Block]:
+    skips = summary.recorded.skips
+    blocks: list[Block] = [Table(skips[:_SKIPS_SHOWN], head=("frame", "reason"))]
+    if len(skips) > _SKIPS_SHOWN:
+        rest = format_cell(len(skips) - _SKIPS_SHOWN)
+        blocks.append(Note(f"And {rest} more, listed in report.json."))
+    return blocks

@@ -1,0 +1,84 @@
+"""The numbers of a report as plain values, as report.json has them."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from .spread import Spread
+from .summary import ScanSummary
+from .words import rig_rows
+
+
+def as_json(summary: ScanSummary) -> dict[str, Any]:
+    """Give the content of report.json: plain values, units in the keys, None for what is not."""
+    recorded, model, timeline = summary.recorded, summary.model, summary.timeline
+    return {
+        "format": 1,
+        "recording": {
+            "name": recorded.name,
+            "size_px": list(recorded.size),
+            "fields_per_picture": recorded.fields_per_picture,
+            "is_timed": recorded.is_timed,
+        },
+        "frames": {
+            "read": summary.num_frames,
+            "skipped": len(recorded.skips),
+            "without_stripe": summary.num_empty,
+            "skips": [{"frame": index, "reason": reason} for index, reason in recorded.skips],
+        },
+        "points": {
+            "on_profiles": summary.num_points,
+            "outliers": model.outliers,
+            "in_cloud": model.points,
+        },
+        "mesh": {"vertices": model.vertices, "faces": model.faces},
+        "size_mm": None if model.size is None else [_round(1e3 * edge) for edge in model.size],
+        "signal_grey_levels": _as_plain(summary.signal, 1.0),
+        "depth_mm": _as_plain(summary.depth, 1e3),
+        "sigma_mm": _as_plain(summary.sigma, 1e3),
+        "spacing_along_stripe_mm": _as_plain(summary.across, 1e3),
+        "spacing_along_motion_mm": _as_plain(summary.along, 1e3),
+        "rig": dict(rig_rows(summary.rig)),
+        "laser": summary.laser,
+        "settings": dict(summary.settings),
+        "versions": dict(summary.versions),
+        "durations_s": {name: _round(time) for name, time in summary.durations.items()},
+        "pictures": [{"path": p.path, "caption": p.caption} for p in summary.pictures],
+        "timeline": {
+            "time_s" if recorded.is_timed else "picture": _as_list(timeline.time),
+            "frames": timeline.frames.tolist(),
+            "frames_without_stripe": timeline.empty.tolist(),
+            "points_per_frame": _as_list(timeline.points),
+            **_as_lists("signal_grey_levels", timeline.signal, 1.0),
+            **_as_lists("depth_mm", timeline.depth, 1e3),
+        },
+    }
+
+
+def _as_plain(spread: Spread, scale: float) -> dict[str, float | None]:
+    return {
+        name: None if value is None else _round(scale * value)
+        for name, value in (
+            ("smallest", spread.smallest),
+            ("percent_5", spread.low),
+            ("median", spread.median),
+            ("percent_95", spread.high),
+            ("largest", spread.largest),
+        )
+    }
+
+
+def _as_lists(name: str, values: np.ndarray, scale: float) -> dict[str, list[float | None]]:
+    shares = ("percent_5", "median", "percent_95")
+    columns = zip(shares, values.T, strict=True)
+    return {f"{name}_{share}": _as_list(scale * column) for share, column in columns}
+
+
+def _as_list(values: np.ndarray) -> list[float | None]:
+    return [_round(value) if math.isfinite(value) else None for value in values.tolist()]
+
+
+def _round(value: float) -> float:
+    """Keep seven digits: more than any of these numbers means."""
+    return float(f"{value:.7g}")

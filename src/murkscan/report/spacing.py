@@ -1,0 +1,66 @@
+"""How far apart neighbouring points lie, along the stripe and along the motion."""
+
+import numpy as np
+
+from ..types.arrays import Indices, Scalars
+from ..types.laser import Axis
+from ..types.profile import Profile
+from ..types.trajectory import Trajectory
+
+_LARGEST_GAP = 2
+"""Frames from one point of a scan line to its neighbour: fields share their rows with every second
+field only."""
+
+
+def spacing_across(profile: Profile, axis: Axis) -> Scalars:
+    """Give the distances of points on neighbouring scan lines of one frame [m].
+
+    Args:
+        profile: Points of whole frames; where a scan line has several, the strongest counts.
+        axis: The camera axis along which the laser sits.
+    """
+    points, frame, line = _one_per_line(profile, axis)
+    order = np.lexsort((line, frame))
+    is_next = (np.diff(frame[order]) == 0) & (np.diff(line[order]) == 1)
+    return _steps(points[order], is_next)
+
+
+def spacing_along(profile: Profile, trajectory: Trajectory, axis: Axis) -> Scalars:
+    """Give the distances of points on the same scan line of successive frames [m].
+
+    Args:
+        profile: Points of whole frames; where a scan line has several, the strongest counts.
+        trajectory: world_from_camera.
+        axis: The camera axis along which the laser sits.
+    """
+    in_world = Profile(
+        profile.frame,
+        profile.time,
+        profile.laser,
+        profile.pixels,
+        trajectory.transform(profile.points, profile.time),
+        profile.sigma,
+        profile.signal,
+        profile.posterior,
+    )
+    points, frame, line = _one_per_line(in_world, axis)
+    order = np.lexsort((frame, line))
+    gap = np.diff(frame[order])
+    is_next = (np.diff(line[order]) == 0) & (gap >= 1) & (gap <= _LARGEST_GAP)
+    return _steps(points[order], is_next)
+
+
+def _one_per_line(profile: Profile, axis: Axis) -> tuple[np.ndarray, Indices, Indices]:
+    """Give points, frames and scan lines, with the strongest point of each scan line alone."""
+    column = 0 if axis == "y" else 1
+    line = np.rint(profile.pixels[:, column]).astype(np.int64)
+    frame = profile.frame.astype(np.int64)
+    order = np.lexsort((-profile.signal, line, frame))
+    is_first = np.ones(len(order), bool)
+    is_first[1:] = (np.diff(frame[order]) != 0) | (np.diff(line[order]) != 0)
+    kept = order[is_first]
+    return profile.points[kept], frame[kept], line[kept]
+
+
+def _steps(points: np.ndarray, is_next: np.ndarray) -> Scalars:
+    return np.linalg.norm(np.diff(points, axis=0)[is_next], axis=1)
