@@ -1,0 +1,44 @@
+"""From profiles in the camera frame to one cloud in the world frame."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..geometry.grid import ScanGrid
+from ..types.cloud import PointCloud
+from ..types.laser import Axis
+from ..types.profile import Profile
+from ..types.trajectory import Trajectory
+from .normals import estimate_normals
+
+
+def merge_profiles(profile: Profile, trajectory: Trajectory, *, axis: Axis) -> PointCloud:
+    """Carry the points of all frames to the world frame and give them normals.
+
+    Args:
+        profile: The points of all frames, in the camera frame [m].
+        trajectory: world_from_camera, over the times of the profile.
+        axis: The camera axis along which the lasers sit: scan lines are image rows for "x", image
+            columns for "y".
+
+    Returns:
+        The points in the same order, in the world frame [m]. Normals are turned to the camera, and
+        zero where a point has too few neighbours. sigma_common is zero: it is the rig's to state.
+
+    Raises:
+        InputError: A time lies outside the trajectory, or a point is not finite.
+    """
+    across_stripe = profile.pixels[:, 1 if axis == "x" else 0]
+    cloud = PointCloud(
+        points=trajectory.transform(profile.points, profile.time),
+        normals=np.zeros((len(profile), 3), np.float32),
+        signal=profile.signal,
+        posterior=profile.posterior,
+        sigma=profile.sigma,
+        sigma_common=np.zeros(len(profile), np.float32),
+        frame=profile.frame.astype(np.int32),
+        scan_line=np.rint(across_stripe).astype(np.int32),
+        laser=profile.laser,
+    )
+    cameras = trajectory.transform(np.zeros_like(profile.points), profile.time)
+    return replace(cloud, normals=estimate_normals(ScanGrid.from_cloud(cloud), cameras))

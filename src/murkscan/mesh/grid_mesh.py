@@ -1,0 +1,91 @@
+"""Triangles between neighbouring profiles: the surface exactly as it was scanned."""
+
+from dataclasses import dataclass
+from typing import final
+
+import numpy as np
+
+from ..errors import InputError, NotEnoughData
+from ..geometry.grid import NONE, ScanGrid, reverse_links
+from ..types.arrays import Faces, Indices
+from ..types.cloud import PointCloud
+from ..types.mesh import Mesh
+from .base import AbstractMesher, drop_unused_vertices, require_profiles
+
+
+@final
+@dataclass(frozen=True)
+class GridMesh(AbstractMesher):
+    """Join each point to its neighbours along its profile and across to the next one.
+
+    Every vertex is a measured point, and nothing is smoothed. The surface is cut at depth jumps and
+    open where a profile or a scan line is missing. Four neighbours make two triangles, three make
+    one::
+
+        a ─── b      split along the shorter diagonal        a ─── b
+        │  ╲  │                                              │  ╱
+        c ─── d                                              c      (d is missing)
+    """
+
+    max_jump: float | None = None
+    """Largest distance between neighbours on one surface [m]. None: five times the usual distance
+    in that direction, and four standard deviations of the points."""
+
+    def __post_init__(self) -> None:
+        """Refuse a jump that cuts everything."""
+        if self.max_jump is not None and not self.max_jump > 0:
+            raise InputError(f"max_jump must be above 0, got {self.max_jump:g} m.")
+
+    def mesh(self, cloud: PointCloud) -> Mesh:
+        """Make the surface; its vertices are the points that have neighbours, in their order."""
+        require_profiles(cloud)
+        grid = ScanGrid.from_cloud(cloud, max_jump=self.max_jump)
+        along, across = grid.linked(0, 1), grid.linked(1, 0)
+        faces = np.concatenate([_full_cells(grid, along, across), _corners(along, across)])
+        if len(faces) == 0:
+            raise NotEnoughData(
+                f"None of the {len(cloud)} points has neighbours in its own profile and in the "
+                "next. Record with less space between the profiles, or raise max_jump."
+            )
+        return drop_unused_vertices(Mesh(cloud.points, _face_camera(grid, faces)))
+
+
+def _full_cells(grid: ScanGrid, along: Indices, across: Indices) -> Faces:
+    """Make two triangles of every four points that are linked in a ring."""
+    a = np.flatnonzero((along != NONE) & (across != NONE))
+    b, c = along[a], across[a]
+    d = along[c]
+    ring = (d != NONE) & (across[b] == d)
+    a, b, c, d = a[ring], b[ring], c[ring], d[ring]
+    by_ad = grid.distance(a, d) <= grid.distance(b, c)
+    first = np.stack([a, c, np.where(by_ad, d, b)], axis=1)
+    second = np.stack([np.where(by_ad, a, c), d, b], axis=1)
+    return np.concatenate([first, second])
+
+
+def _corners(along: Indices, across: Indices) -> Faces:
+    """Make a triangle of every three points whose fourth is missing."""
+    found = []
+    for beside, turned in ((along, False), (reverse_links(along), True)):
+        for beyond, turned_again in ((across, False), (reverse_links(across), True)):
+            a = np.flatnonzero((beside != NONE) & (beyond != NONE))
+            b, c = beside[a], beyond[a]
+            alone = (beyond[b] == NONE) & (beside[c] == NONE)
+            corner = np.stack([a, c, b], axis=1)[alone]
+            found.append(corner if turned == turned_again else corner[:, ::-1])
+    return np.concatenate(found)
+
+
+def _face_camera(grid: ScanGrid, faces: Faces) -> Faces:
+    """Turn the triangles to the camera, each strip between two profiles as a whole.
+
+    All cells of a strip are wound alike; which way depends on where the rig moved. The strip's
+    normals vote, so that a noisy point cannot turn its own triangle.
+    """
+    points, normals = grid.cloud.points, grid.cloud.normals
+    a, b, c = faces.T
+    upright = np.cross(points[b] - points[a], points[c] - points[a])
+    votes = np.einsum("ij,ij->i", upright, normals[a] + normals[b] + normals[c])
+    strip = grid.profile[faces].min(axis=1)
+    away = np.bincount(strip, weights=votes) < 0
+    return np.where(away[strip][:, None], faces[:, ::-1], faces)

@@ -1,0 +1,48 @@
+"""What every colouring can do."""
+
+import abc
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from ..types.arrays import Mask, Points
+
+Colours = Float[np.ndarray, "n 3"]
+"""Red, green and blue from 0 to 1, one a row."""
+
+
+@dataclass(frozen=True)
+class Legend:
+    """What the colours mean."""
+
+    label: str
+    """The quantity and its unit."""
+    low: float
+    """Value at the colour map's start, in that unit."""
+    high: float
+    """Value at the colour map's end, in that unit."""
+    colour_map: str
+    """Its name in matplotlib."""
+
+
+class AbstractColours(abc.ABC):
+    """A way to colour a surface. Subclasses are final: wrap one, do not subclass it."""
+
+    @abc.abstractmethod
+    def legend(self, surface: Points) -> Legend | None:
+        """Say what the colours of a surface with these points mean; None if nothing.
+
+        Args:
+            surface: All points of the surface, in the world frame [m].
+        """
+
+    @abc.abstractmethod
+    def paint(self, points: Points, outside: Mask, legend: Legend | None) -> Colours:
+        """Colour points on the surface.
+
+        Args:
+            points: The points, in the world frame [m].
+            outside: Whether the viewer looks at the side that the camera saw.
+            legend: What `legend` gave for the whole surface.
+        """

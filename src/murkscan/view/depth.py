@@ -1,0 +1,44 @@
+"""Colour by depth: how far from the camera."""
+
+from dataclasses import dataclass
+from typing import final
+
+import matplotlib as mpl
+import numpy as np
+
+from ..types.arrays import Mask, Points
+from .base import AbstractColours, Colours, Legend
+
+_COLOUR_MAP = "viridis_r"
+_SHARE = 0.5
+"""Percent of the points at each end of the depths that may lie beyond the colours."""
+
+
+@final
+@dataclass(frozen=True)
+class Depth(AbstractColours):
+    """Viridis, bright where it is near: equal steps of depth look equal.
+
+    References:
+        Nuñez, Anderton, Renslow, Optimizing colormaps with consideration for color vision
+        deficiency, PLoS ONE 13(7), 2018.
+    """
+
+    forward: tuple[float, float, float] = (0.0, 0.0, 1.0)
+    """The direction in which depth is counted, in the world frame; the world's origin has 0."""
+
+    def legend(self, surface: Points) -> Legend | None:
+        """Give the range of depths [mm], without the last half percent at either end."""
+        if len(surface) == 0:
+            return None
+        low, high = np.percentile(surface @ np.array(self.forward) * 1e3, [_SHARE, 100 - _SHARE])
+        # A level surface has no range: a tenth of a millimetre keeps its rounding out of sight.
+        middle, half = (low + high) / 2, max((high - low) / 2, 0.05)
+        return Legend("depth [mm]", float(middle - half), float(middle + half), _COLOUR_MAP)
+
+    def paint(self, points: Points, outside: Mask, legend: Legend | None) -> Colours:
+        """Give each depth its colour; both sides of the surface look alike."""
+        if legend is None:
+            return np.zeros((len(points), 3))
+        share = (points @ np.array(self.forward) * 1e3 - legend.low) / (legend.high - legend.low)
+        return mpl.colormaps[legend.colour_map](share)[:, :3]

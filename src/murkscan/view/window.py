@@ -1,0 +1,80 @@
+"""Where the surface lies in the picture, and what each of its pixels shows."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from ..errors import InputError
+from ..types.arrays import Points
+
+Depths = Float[np.ndarray, "h w"]
+Directions2D = Float[np.ndarray, "h w 3"]
+Seen = Bool[np.ndarray, "h w"]
+
+SAMPLES = 2
+"""Samples a pixel along each side."""
+_SIDE, _TOP, _BOTTOM, _BAR = 0.04, 0.08, 0.13, 0.16
+"""Shares of the picture kept free for the writing: at the sides, and on the right for a colour
+bar."""
+
+
+@dataclass(frozen=True)
+class Window:
+    """Maps the view frame [m] to samples of the picture."""
+
+    size: tuple[int, int]
+    """Width and height of the picture [px]."""
+    scale: float
+    """Samples a metre."""
+    centre: tuple[float, float]
+    """The sample that shows the origin of the view frame, u and v."""
+
+    @classmethod
+    def around(cls, points: Points, size: tuple[int, int], *, with_bar: bool) -> "Window":
+        """Fit points into the part of the picture that the writing leaves free.
+
+        Args:
+            points: Points in the view frame [m], at least one.
+            size: Width and height of the picture [px].
+            with_bar: Whether a colour bar stands on the right.
+
+        Raises:
+            InputError: The picture is too small to be one.
+        """
+        width, height = size
+        if min(size) < 64:
+            raise InputError(f"A picture needs at least 64 x 64 pixels, got {width} x {height}.")
+        right = _BAR if with_bar else _SIDE
+        free = np.array([width * (1 - _SIDE - right), height * (1 - _TOP - _BOTTOM)]) * SAMPLES
+        start = np.array([width * _SIDE, height * _TOP]) * SAMPLES
+        low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
+        scale = float(np.min(free / np.maximum(high - low, 1e-9)))
+        u, v = start + free / 2 - scale * (low + high) / 2
+        return cls(size, scale, (float(u), float(v)))
+
+    def as_samples(self, points: Points) -> Points:
+        """Give points of the view frame [m] as samples u, v and depth in the same unit."""
+        return points * self.scale + np.array([*self.centre, 0.0])
+
+    @property
+    def num_samples(self) -> tuple[int, int]:
+        """Width and height in samples."""
+        return self.size[0] * SAMPLES, self.size[1] * SAMPLES
+
+
+@dataclass(frozen=True, eq=False)
+class Relief:
+    """What each sample of the picture shows, in the view frame."""
+
+    depth: Depths
+    """Depth [samples]; NaN where there is nothing."""
+    normals: Directions2D
+    """Unit normals, turned to the viewer."""
+    outside: Seen
+    """Whether the viewer looks at the side that the camera saw."""
+
+    @property
+    def seen(self) -> Seen:
+        """Tell where there is something."""
+        return np.isfinite(self.depth)
