@@ -26,6 +26,9 @@ _LEAN = 0.2
 for noise smears them into each other; progressive video of all kinds was seen to stay below 0.1.
 """
 
+_AGREEMENT = 0.8
+"""Share of the runs that move, from which they say the same."""
+
 Field = Float32[np.ndarray, "_ _"]
 
 
@@ -78,8 +81,10 @@ def find_field_order(runs: Iterable[Sequence[Image]]) -> Verdict:
         runs: Pictures that follow one another, all of one size; several runs from different
             places of a recording.
     """
-    motion, lean = np.zeros((2, len(_SCALES))), np.zeros((2, len(_SCALES)))
+    motion, lean = [np.zeros((2, len(_SCALES)))], [np.zeros((2, len(_SCALES)))]
     for run in runs:
+        motion.append(np.zeros_like(motion[0]))
+        lean.append(np.zeros_like(lean[0]))
         fields = (_shrink_fields(image) for image in run if min(image.shape) >= _ROWS)
         previous = next(fields, None)
         for current in fields:
@@ -89,10 +94,10 @@ def find_field_order(runs: Iterable[Sequence[Image]]) -> Verdict:
                     _differences(old[1], new[0]),
                     _differences(old[0], new[1]),
                 )
-                motion[:, scale] += _sums(b + c - 2 * a)
-                lean[:, scale] += _sums(c - b)
+                motion[-1][:, scale] += _sums(b + c - 2 * a)
+                lean[-1][:, scale] += _sums(c - b)
             previous = current
-    return _judge(motion, lean)
+    return _judge(np.array(motion), np.array(lean))
 
 
 def _shrink_fields(image: Image) -> list[tuple[Field, Field]]:
@@ -119,16 +124,28 @@ def _sums(values: Field) -> tuple[float, float]:
     return float(flat.sum()), float(flat @ flat)
 
 
-def _judge(motion: np.ndarray, lean: np.ndarray) -> Verdict:
-    """Decide at the scale where motion stands out most; rows: sum, sum of squares."""
+def _judge(motions: np.ndarray, leans: np.ndarray) -> Verdict:
+    """Decide at the scale where motion stands out most; runs × (sum, sum of squares) × scales."""
+    motion, lean = motions.sum(axis=0), leans.sum(axis=0)
     clear = motion[0] / np.sqrt(motion[1] + 1e-9)
     best = int(clear.argmax())
     if clear[best] < _SIGNIFICANT:
         return "undecided"
     ratio = lean[0, best] / motion[0, best]
     certain = abs(lean[0, best]) / np.sqrt(lean[1, best] + 1e-9)
-    if abs(ratio) < _LEAN:
+    if abs(ratio) < _LEAN or not _agree(motions[:, :, best], leans[:, :, best], ratio):
         return "progressive"
     if certain < _SIGNIFICANT:
         return "undecided"
     return "top-first" if ratio > 0 else "bottom-first"
+
+
+def _agree(motions: np.ndarray, leans: np.ndarray, ratio: float) -> bool:
+    """Tell whether nearly all runs that move lean to the side of their sum.
+
+    Fields lean to one side always. Where a narrow stripe creeps, so that what its rows miss of it
+    outweighs its motion, a progressive recording leans too, but to either side.
+    """
+    moving = motions[:, 0] > _SIGNIFICANT * np.sqrt(motions[:, 1] + 1e-9)
+    same_side = leans[moving, 0] * ratio > _LEAN * abs(ratio) * motions[moving, 0]
+    return bool(same_side.sum() >= _AGREEMENT * moving.sum())

@@ -56,11 +56,11 @@ class Candidates:
         """Find the peaks of each frame, measure them, and assemble its stripe."""
         axis = rig.lasers[laser].axis
         rise = math.ceil(max(self.min_height, self.min_contrast * background.noise))
-        reach = math.ceil(self.half_width) + _CLEAR
+        near = math.ceil(self.half_width)
         for frame in frames:
             image, down = np.ascontiguousarray(frame.image), axis == "y"
             num_lines = image.shape[1 if down else 0]
-            peaks = find_peaks(image, down, rise, reach, _MOST * num_lines)
+            peaks = find_peaks(image, down, rise, near + _CLEAR, near, _MOST * num_lines)
             centres, sigma, signal = measure(image, peaks, down).T
             yield assemble_stripe(
                 frame, axis, laser, lines=peaks[:, 0], centres=centres, sigma=sigma, signal=signal

@@ -22,7 +22,8 @@ from .candidates import Candidates
 class GaussianFit(AbstractExtractor):
     """A Gaussian on a sloping background, fitted to each peak by least squares.
 
-    Saturated pixels are left out. The standard deviation of the centre is that of the fit.
+    Pixels at the frame's highest level, which may be saturated, are left out. The standard
+    deviation of the centre is that of the fit.
 
     References:
         Marquardt, An algorithm for least-squares estimation of nonlinear parameters, SIAM 11(2),
@@ -33,7 +34,7 @@ class GaussianFit(AbstractExtractor):
     """Half the window [px]: about four times the stripe's own standard deviation."""
     min_height: float = 10.0
     """Grey levels by which a peak must rise above both of its sides."""
-    min_contrast: float = 8.0
+    min_contrast: float = 5.0
     """The same, in standard deviations of the noise."""
 
     def __post_init__(self) -> None:
@@ -46,7 +47,9 @@ class GaussianFit(AbstractExtractor):
         """Find the stripe in each frame; see `AbstractExtractor.extract`."""
 
         def measure(image: Image, peaks: np.ndarray, down: bool) -> np.ndarray:
-            half_width, full = math.ceil(self.half_width), float(np.iinfo(image.dtype).max)
+            # A sensor may saturate below the largest number of its file: 12 bit in 16, say.
+            full = float(image.max())
+            half_width = math.ceil(self.half_width)
             return fit_peaks(image, peaks, down, half_width, background.noise, full)
 
         return self._candidates().extract(frames, rig, background, laser, measure)

@@ -36,7 +36,7 @@ class GrayGravity(AbstractExtractor):
     """Share of the peak's height that counts as its foot, and not as stripe."""
     min_height: float = 10.0
     """Grey levels by which a peak must rise above both of its sides."""
-    min_contrast: float = 8.0
+    min_contrast: float = 5.0
     """The same, in standard deviations of the noise."""
 
     def __post_init__(self) -> None:

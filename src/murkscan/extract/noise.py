@@ -15,6 +15,9 @@ _QUANTISATION = 1 / math.sqrt(12)
 _GAUSSIAN = 1.4826
 """Standard deviation of Gaussian noise as a multiple of its median absolute value."""
 
+_APART = 3
+"""Distance of the pixels whose differences are taken [px]."""
+
 
 def learn_noise(frames: Sequence[Frame]) -> Background:
     """Estimate the standard deviation of one pixel's noise.
@@ -42,7 +45,13 @@ def learn_noise(frames: Sequence[Frame]) -> Background:
 
 def _noise_within(image: Image) -> float:
     levels = image.astype(np.int32)
-    bend = levels[:, 2:] - 2 * levels[:, 1:-1] + levels[:, :-2]
+    # Neighbours share noise where a colour mosaic or an encoder has smoothed them: look further.
+    left, middle, right = (
+        levels[:, : -2 * _APART],
+        levels[:, _APART:-_APART],
+        levels[:, 2 * _APART :],
+    )
+    bend = left - 2 * middle + right
     return _spread(bend) / math.sqrt(6)
 
 

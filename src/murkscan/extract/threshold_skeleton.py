@@ -19,8 +19,9 @@ from .base import AbstractExtractor
 
 OTSU = 0.0
 """The level that stands for Otsu's automatic one."""
-_UNIFORM = 1 / np.sqrt(12)
-"""Standard deviation of a centre that is only known to lie in its pixel [px]."""
+_SIGMA = np.sqrt(1 / 12 + 1 / 12)
+"""Standard deviation of a centre that may lie anywhere in its pixel, of a stripe of which thinning
+may have taken one pixel more on either side [px]."""
 
 
 @final
@@ -65,7 +66,7 @@ class ThresholdSkeleton(AbstractExtractor):
                 laser,
                 lines=lines,
                 centres=centres.astype(float),
-                sigma=np.full(len(lines), _UNIFORM),
+                sigma=np.full(len(lines), _SIGMA),
                 signal=levels[where].astype(float) - rest,
             )
 

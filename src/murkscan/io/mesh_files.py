@@ -26,10 +26,12 @@ def save_mesh(path: Path, mesh: Mesh) -> None:
         mesh: The surface [m].
 
     Raises:
-        InputError: Another suffix.
+        InputError: Another suffix, or a mesh without triangles.
         DeviceError: The disk is full or cannot be written.
     """
     kind = _kind(path)
+    if len(mesh.faces) == 0:
+        raise InputError(f"The mesh for {path} has no triangles; nothing is written.")
     if kind == "ply":
         data = _as_ply(mesh)
     else:

@@ -10,6 +10,7 @@ import pyarrow.parquet as pq
 from ..errors import FormatError
 from ..types.profile import Profile
 from ..types.stripe import Stripe
+from ..types.true_stripe import TrueStripe
 from .atomic import replacing
 
 
@@ -73,6 +74,17 @@ def load_profile(path: Path) -> Profile:
         signal=columns["signal"],
         posterior=columns["posterior"],
     )
+
+
+def save_true_stripe(path: Path, stripe: TrueStripe) -> None:
+    """Write true centres as columns; points are in the world frame.
+
+    Raises:
+        DeviceError: The disk is full or cannot be written.
+    """
+    (u, v), (x, y, z) = stripe.pixels.T, stripe.points.T
+    columns = {"frame": stripe.frame, "laser": stripe.laser, "u": u, "v": v}
+    _save(path, columns | {"x_m": x, "y_m": y, "z_m": z, "signal": stripe.signal})
 
 
 def _save(path: Path, columns: Mapping[str, np.ndarray]) -> None:

@@ -4,7 +4,6 @@ import abc
 
 import numpy as np
 
-from ..errors import NotEnoughData
 from ..types.cloud import PointCloud
 from ..types.mesh import Mesh
 
@@ -17,30 +16,20 @@ class AbstractMesher(abc.ABC):
         """Make a surface of a scan's points.
 
         Args:
-            cloud: The points with their normals, frames and scan lines.
+            cloud: The points with their normals, frames and scan lines; of any number.
 
         Returns:
             Triangles in the cloud's frame, counter-clockwise seen from where the camera was; every
-            vertex belongs to a triangle.
+            vertex belongs to a triangle. A cloud without two neighbouring profiles has none.
 
         Raises:
-            NotEnoughData: The cloud is empty, has one profile only, or gives no triangle.
             InputError: A point is not finite.
         """
 
 
-def require_profiles(cloud: PointCloud) -> None:
-    """Refuse a cloud that can have no surface.
-
-    Raises:
-        NotEnoughData: It has fewer than two profiles.
-    """
-    num_profiles = len(np.unique(cloud.frame))
-    if num_profiles < 2:
-        raise NotEnoughData(
-            f"A surface needs points of at least 2 frames, got {len(cloud)} points of "
-            f"{num_profiles}. Record the object while the rig moves across it."
-        )
+def empty_mesh() -> Mesh:
+    """Make the surface of a cloud that has none."""
+    return Mesh(np.zeros((0, 3)), np.zeros((0, 3), np.int64))
 
 
 def drop_unused_vertices(mesh: Mesh) -> Mesh:

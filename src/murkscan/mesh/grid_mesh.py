@@ -5,12 +5,12 @@ from typing import final
 
 import numpy as np
 
-from ..errors import InputError, NotEnoughData
+from ..errors import InputError
 from ..geometry.grid import NONE, ScanGrid, reverse_links
 from ..types.arrays import Faces, Indices
 from ..types.cloud import PointCloud
 from ..types.mesh import Mesh
-from .base import AbstractMesher, drop_unused_vertices, require_profiles
+from .base import AbstractMesher, drop_unused_vertices, empty_mesh
 
 
 @final
@@ -38,15 +38,11 @@ class GridMesh(AbstractMesher):
 
     def mesh(self, cloud: PointCloud) -> Mesh:
         """Make the surface; its vertices are the points that have neighbours, in their order."""
-        require_profiles(cloud)
+        if len(cloud) == 0:
+            return empty_mesh()
         grid = ScanGrid.from_cloud(cloud, max_jump=self.max_jump)
         along, across = grid.linked(0, 1), grid.linked(1, 0)
         faces = np.concatenate([_full_cells(grid, along, across), _corners(along, across)])
-        if len(faces) == 0:
-            raise NotEnoughData(
-                f"None of the {len(cloud)} points has neighbours in its own profile and in the "
-                "next. Record with less space between the profiles, or raise max_jump."
-            )
         return drop_unused_vertices(Mesh(cloud.points, _face_camera(grid, faces)))
 
 

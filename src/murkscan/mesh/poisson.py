@@ -6,17 +6,19 @@ from typing import TYPE_CHECKING, Any, final
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..errors import InputError, MissingDependency, NotEnoughData
+from ..errors import InputError, MissingDependency
 from ..geometry.grid import ScanGrid
 from ..types.cloud import PointCloud
 from ..types.mesh import Mesh
-from .base import AbstractMesher, drop_unused_vertices, require_profiles
+from .base import AbstractMesher, drop_unused_vertices, empty_mesh
 
 if TYPE_CHECKING:
     from types import ModuleType
 
 _MAX_DEPTH = 12
 """Depth above which the octree outgrows the memory of ordinary machines."""
+_FEWEST = 4
+"""Points below which there is no surface to fit."""
 _SUPPORT = 2.0
 """Distance from the nearest point, in usual distances between profiles, up to which the surface
 counts as seen."""
@@ -45,15 +47,11 @@ class Poisson(AbstractMesher):
 
     def mesh(self, cloud: PointCloud) -> Mesh:
         """Make the surface; its vertices lie near the points, not on them."""
-        require_profiles(cloud)
         open3d = _import_open3d()
         grid = ScanGrid.from_cloud(cloud)
         with_normal = cloud[np.any(cloud.normals != 0, axis=1)]
-        if len(with_normal) < 4:
-            raise NotEnoughData(
-                f"Only {len(with_normal)} of {len(cloud)} points have a normal. Record with less "
-                "space between the profiles."
-            )
+        if len(with_normal) < _FEWEST:
+            return empty_mesh()
         mesh = _reconstruct(open3d, with_normal, self.depth)
         reach = _SUPPORT * max(grid.usual_across, grid.usual_along)
         return _trim(_face_normals(mesh, with_normal), cloud, reach)
@@ -94,9 +92,4 @@ def _face_normals(mesh: Mesh, cloud: PointCloud) -> Mesh:
 def _trim(mesh: Mesh, cloud: PointCloud, reach: float) -> Mesh:
     distance, _ = cKDTree(cloud.points).query(mesh.vertices)
     seen = (distance <= reach)[mesh.faces].all(axis=1)
-    if not seen.any():
-        raise NotEnoughData(
-            f"No part of the surface lies within {reach * 1e3:.3g} mm of the {len(cloud)} points; "
-            "take GridMesh instead, or a greater depth."
-        )
     return drop_unused_vertices(Mesh(mesh.vertices, mesh.faces[seen]))

@@ -1,16 +1,25 @@
 """The figures of a report."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ..page import ACCENT, Figure, as_svg, new_figure
 from .timeline import Quantiles, Timeline
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 def signal_chart(timeline: Timeline, *, time_label: str) -> Figure:
     """Draw the signal over time."""
     caption = "Height of the stripe above its surroundings: median and 90 % of each frame's points."
     return _band(
-        timeline, timeline.signal, "signal", labels=(time_label, "grey levels"), caption=caption
+        timeline,
+        timeline.signal,
+        "signal",
+        labels=(time_label, "signal [grey levels]"),
+        caption=caption,
     )
 
 
@@ -21,7 +30,11 @@ def depth_chart(timeline: Timeline, *, time_label: str) -> Figure:
         "points."
     )
     return _band(
-        timeline, 1e3 * timeline.depth, "depth", labels=(time_label, "mm"), caption=caption
+        timeline,
+        1e3 * timeline.depth,
+        "depth",
+        labels=(time_label, "depth z [mm]"),
+        caption=caption,
     )
 
 
@@ -32,7 +45,7 @@ def points_chart(timeline: Timeline, *, time_label: str) -> Figure:
     axes.plot(timeline.time, timeline.points, color=ACCENT)
     axes.set(xlabel=time_label, ylabel="points a frame")
     axes.set_ylim(bottom=0)
-    axes.margins(x=0.01)
+    _span_all(axes, timeline)
     title = "Points a frame over time"
     return Figure(as_svg(figure, name="points", title=title), f"{title}; 0 where none was found.")
 
@@ -47,8 +60,14 @@ def _band(
     # A point shows a median whose neighbours are missing, which a line cannot.
     axes.plot(timeline.time, median, color=ACCENT, marker="." if _has_gaps(median) else "")
     axes.set(xlabel=labels[0], ylabel=labels[1])
-    axes.margins(x=0.01)
+    _span_all(axes, timeline)
     return Figure(as_svg(figure, name=name, title=caption), caption)
+
+
+def _span_all(axes: "Axes", timeline: Timeline) -> None:
+    """Give all figures the same time axis, so that they can be read together."""
+    first, last = float(timeline.time[0]), float(timeline.time[-1])
+    axes.set_xlim(first, last if last > first else first + 1)
 
 
 def _has_gaps(values: np.ndarray) -> bool:

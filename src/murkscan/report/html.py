@@ -1,15 +1,15 @@
 """The page that tells how a scan went."""
 
-from collections.abc import Sequence
-
 from ..page import Block, Facts, Gallery, Note, Picture, Section, Table, format_cell, render_page
 from .charts import depth_chart, points_chart, signal_chart
 from .spread import Spread
 from .summary import ScanSummary
-from .words import describe_length, describe_range, rig_rows, setting_rows
+from .words import describe_range, rig_rows, setting_rows
 
 _SKIPS_SHOWN = 50
 """Rows of the table of skipped frames, at most; report.json has them all."""
+
+_UNITS = "Lengths in metres, times in seconds, angles in radians, pictures in pixels."
 
 
 def as_html(summary: ScanSummary) -> str:
@@ -27,7 +27,7 @@ def as_html(summary: ScanSummary) -> str:
         sections.append(Section("Skipped frames", _skips(summary)))
     sections += [
         Section("Rig", [Table(rig_rows(summary.rig))]),
-        Section("Settings", [Table(list(setting_rows(summary.settings)))]),
+        Section("Settings", [Note(_UNITS), Table(list(setting_rows(summary.settings)))]),
         Section("Versions", [Table(list(summary.versions.items()))]),
     ]
     if summary.durations:
@@ -74,7 +74,8 @@ def _verdict(summary: ScanSummary) -> list[Block]:
         )
     ]
     if skipped:
-        text = f"{format_cell(skipped)} frames could not be read; the reasons stand below."
+        frames_were = "1 frame was" if skipped == 1 else f"{format_cell(skipped)} frames were"
+        text = f"{frames_were} skipped as unreadable; see below for the reasons."
         notes.append(Note(text, "warning"))
     return notes
 
@@ -88,20 +89,19 @@ def _charts(summary: ScanSummary) -> list[Block]:
 
 
 def _spreads(summary: ScanSummary) -> Table:
-    lengths = (
-        ("spacing along the stripe", summary.across),
-        ("spacing along the motion", summary.along),
-        ("depth (z)", summary.depth),
-        ("standard deviation along the ray", summary.sigma),
-    )
-    rows = [(name, *map(describe_length, _figures(spread))) for name, spread in lengths]
-    levels = ("–" if n is None else f"{n:.1f}" for n in _figures(summary.signal))
-    rows.append(("signal [grey levels]", *levels))
+    rows = [
+        ("spacing along the stripe [mm]", *_figures(summary.across, 1e3)),
+        ("spacing along the motion [mm]", *_figures(summary.along, 1e3)),
+        ("depth z [mm]", *_figures(summary.depth, 1e3)),
+        ("standard deviation along the ray [mm]", *_figures(summary.sigma, 1e3)),
+        ("signal [grey levels]", *_figures(summary.signal, 1.0)),
+    ]
     return Table(rows, head=("", "smallest", "5 %", "median", "95 %", "largest"))
 
 
-def _figures(spread: Spread) -> Sequence[float | None]:
-    return spread.smallest, spread.low, spread.median, spread.high, spread.largest
+def _figures(spread: Spread, scale: float) -> list[float | None]:
+    values = (spread.smallest, spread.low, spread.median, spread.high, spread.largest)
+    return [None if value is None else scale * value for value in values]
 
 
 def _skips(summary: ScanSummary) -> list[Block]:

@@ -49,13 +49,6 @@ def setting_rows(settings: Mapping[str, Any], parent: str = "") -> Iterator[tupl
             yield full, _describe_value(value)
 
 
-def describe_length(metres: float | None) -> str:
-    """Write a length in millimetres, or in metres from ten of them."""
-    if metres is None:
-        return "–"
-    return f"{metres:.4g} m" if abs(metres) >= 10 else f"{metres * 1e3:.4g} mm"
-
-
 def describe_range(spread: Spread) -> str:
     """Write the range of a length, from the smallest to the largest, in millimetres."""
     if spread.smallest is None or spread.largest is None:
@@ -97,7 +90,7 @@ def _describe_port(port: Port) -> str:
 def _describe_water(rig: Rig) -> str:
     water = rig.water
     if water is None:
-        return "none: the rig is described as it is in air, or as it was calibrated"
+        return "not stated: the rig is taken as it was calibrated"
     index = refractive_index(water, rig.wavelength)
     if water.index is not None:
         return f"index {index:.5f}, as given"

@@ -6,11 +6,12 @@ import numpy as np
 
 from ..io.images import write_image
 from ..io.mesh_files import save_mesh
-from ..io.parquet import save_truth
+from ..io.parquet import save_true_stripe
 from ..io.poses import save_poses
 from ..io.rig_toml import save_rig
 from ..io.times_csv import write_times
 from ..simulate import Scene, sample_mesh, simulate_frames
+from ..types.true_stripe import TrueStripe
 from .progress import Progress, silent
 
 _MESH_SPACING = 0.002
@@ -29,7 +30,7 @@ def simulate_recording(scene: Scene, out: Path, *, progress: Progress = silent) 
         DeviceError: The disk is full.
     """
     times: dict[str, float] = {}
-    stripes = []
+    stripes: list[TrueStripe] = []
     for simulated in simulate_frames(scene):
         name = f"{simulated.frame.index:06d}.png"
         write_image(out / "frames" / name, simulated.frame.image)
@@ -39,5 +40,5 @@ def simulate_recording(scene: Scene, out: Path, *, progress: Progress = silent) 
     write_times(out / "frames" / "times.csv", times)
     save_rig(out / "rig.toml", scene.rig)
     save_poses(out / "poses.csv", scene.trajectory.at(np.asarray(scene.times)))
-    save_truth(out / "truth" / "stripes.parquet", stripes)
+    save_true_stripe(out / "truth" / "stripes.parquet", TrueStripe.concatenate(stripes))
     save_mesh(out / "truth" / "mesh.ply", sample_mesh(scene.surface, spacing=_MESH_SPACING))

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from ..io.images import write_image
 from ..project import Project
 from ..view import draw_pictures
 from .progress import Progress, silent

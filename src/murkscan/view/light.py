@@ -7,8 +7,8 @@ from .window import SAMPLES, Depths, Relief
 
 _KEY = np.array([-0.52, -0.62, -0.59])
 """Towards the main light: the upper left of the picture, in front."""
-_AMBIENT, _KEY_LIGHT, _HEAD_LIGHT = 0.26, 0.74, 0.16
-_WRAP = 1.5
+_AMBIENT, _KEY_LIGHT, _HEAD_LIGHT = 0.24, 0.76, 0.10
+_WRAP = 2.0
 """Power of the main light's fall-off: it reaches round to the far side, where no slope is black."""
 _HOLLOW_RADII = (3, 9, 27)
 """Radii over which a hollow is looked for [px]."""

@@ -17,6 +17,8 @@ from .window import Relief, Window
 from .writing import write_on
 
 _BACKGROUND = 0.985
+_EVEN = 0.5
+"""Share of the light that falls evenly where colours have to be read off a scale."""
 
 
 def render(
@@ -74,6 +76,8 @@ def _develop(
     outside = relief.outside[rows, columns]
     paint = colours.paint(in_view @ view.view_from_world, outside, legend)
     light = light_up(relief)[rows, columns]
+    if legend is not None:
+        light = _EVEN + (1 - _EVEN) * light
     samples = np.full((*relief.depth.shape, 3), _BACKGROUND, np.float32)
     samples[rows, columns] = np.clip(paint * light[:, None], 0, 1)
     picture = cv2.resize(samples, window.size, interpolation=cv2.INTER_AREA)
