@@ -3,6 +3,7 @@
 import hashlib
 import json
 import shutil
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.metadata import version
@@ -18,12 +19,15 @@ from .io.mlp import save_frames
 from .io.parquet import load_profile, load_stripe, save_profile, save_stripe
 from .io.ply import load_cloud, save_cloud
 from .io.poses import load_poses, save_poses
-from .types.frame_times import FrameTimes
 from .types.cloud import PointCloud
+from .types.frame_times import FrameTimes
 from .types.mesh import Mesh
 from .types.profile import Profile
 from .types.stripe import Stripe
 from .types.trajectory import Trajectory
+
+STAGES = ("extract", "triangulate", "motion", "cloud", "mesh", "view", "report")
+"""The stages of a scan, in order."""
 
 
 @dataclass(frozen=True)
@@ -48,15 +52,20 @@ class Stage:
         """Give what the stage said when it was finished; nothing before that."""
         return self.result() or {}
 
+    def seconds(self) -> float:
+        """Tell how long the run took that finished the stage [s]."""
+        return float(self._note().get("seconds", 0.0))
+
     def begin(self) -> None:
         """Make the folder ready: parts made with this very key stay, all else is removed."""
         if self._note().get("key") != self.key:
             shutil.rmtree(self.folder, ignore_errors=True)
-        save_json(self._file, {"key": self.key})
+        save_json(self._file, {"key": self.key, "began": time.time()})
 
     def finish(self, result: dict[str, Any]) -> None:
         """Say that the stage is done, with its counts."""
-        save_json(self._file, {"key": self.key, "result": result})
+        seconds = round(time.time() - self._note()["began"], 3)
+        save_json(self._file, {"key": self.key, "seconds": seconds, "result": result})
 
     @property
     def _file(self) -> Path:
@@ -154,16 +163,15 @@ class Project:
         """Write one part of triangulate."""
         save_profile(self._part("triangulate/profiles", part, "parquet"), profile)
 
-    def load_profile(self) -> Profile:
-        """Read all profiles, in order of frames.
-
-        Raises:
-            MissingResult: Triangulate has not been run to its end.
-        """
+    def load_profile_parts(self) -> Iterator[Profile]:
+        """Read the profiles of a finished triangulate, part by part in order of frames."""
         folder = self.finished("triangulate").folder / "profiles"
-        return Profile.concatenate(
-            [load_profile(file) for file in sorted(folder.glob("*.parquet"))]
-        )
+        for file in sorted(folder.glob("*.parquet")):
+            yield load_profile(file)
+
+    def load_profile(self) -> Profile:
+        """Read all profiles of a finished triangulate, in order of frames."""
+        return Profile.concatenate(list(self.load_profile_parts()))
 
     def load_stripe(self) -> Stripe:
         """Read all stripes of a finished extract, in order of frames."""

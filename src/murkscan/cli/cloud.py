@@ -18,7 +18,7 @@ def cloud(out: Path, *, frames: Annotated[bool, Parameter(negative=())] = False)
     """
     from ..project import Project
     from ..survey.cloud import build_cloud
-    from ..survey.scan import load_scan_rig
+    from ..survey.scan_rig import load_scan_rig
     from .summary import print_result
 
     project = Project(out)

@@ -45,9 +45,7 @@ def extract(
     of_recording = load_rig(rig)
     pictures = reading.open(recording, of_recording)
     finder = make_extractor(extractor, settings)
-    project = begin_scan(
-        out, pictures, of_recording, laser=laser, settings={"extractor": finder}
-    )
+    project = begin_scan(out, pictures, of_recording, laser=laser, settings={"extractor": finder})
     with progress_bars() as progress:
         result = extract_recording(
             project, pictures, of_recording, finder, laser=laser, progress=progress

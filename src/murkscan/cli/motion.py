@@ -15,7 +15,7 @@ def motion(out: Path, *, flags: MotionFlags = MotionFlags()) -> None:
     """
     from ..project import Project
     from ..survey.motion import follow_motion
-    from ..survey.scan import load_scan_rig
+    from ..survey.scan_rig import load_scan_rig
     from .summary import print_result
 
     project = Project(out)

@@ -15,6 +15,7 @@ def progress_bars() -> Iterator["Progress"]:
     from rich.progress import (
         BarColumn,
         MofNCompleteColumn,
+        ProgressColumn,
         SpinnerColumn,
         TaskID,
         TextColumn,
@@ -23,8 +24,8 @@ def progress_bars() -> Iterator["Progress"]:
     )
     from rich.progress import Progress as Bars
 
-    columns = (SpinnerColumn(), TextColumn("{task.description:<12}"), BarColumn())
-    columns += (MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn())
+    columns: list[ProgressColumn] = [SpinnerColumn(), TextColumn("{task.description:<12}"), BarColumn()]
+    columns += [MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn()]
     tasks: dict[str, TaskID] = {}
     with Bars(*columns, console=Console(stderr=True)) as bars:
 

@@ -17,7 +17,7 @@ def triangulate(out: Path, *, method: MethodName = "ray-sheet") -> None:
         The way from pixels to points.
     """
     from ..project import Project
-    from ..survey.scan import load_scan_rig
+    from ..survey.scan_rig import load_scan_rig
     from ..survey.triangulate import triangulate_stripes
     from .summary import print_result
 

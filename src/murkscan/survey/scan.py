@@ -9,7 +9,7 @@ from typing import Any
 
 from ..capture import AbstractRecording
 from ..extract import AbstractExtractor, GrayGravity
-from ..io.rig_toml import as_tables, parse_rig
+from ..io.rig_toml import as_tables
 from ..mesh import AbstractMesher, GridMesh
 from ..motion import AbstractMotion
 from ..project import Project
@@ -121,15 +121,6 @@ def begin_scan(
         }
     )
     return project
-
-
-def load_scan_rig(project: Project) -> Rig:
-    """Give the rig that a project's recording was made with.
-
-    Raises:
-        MissingResult: The folder holds no scan.
-    """
-    return parse_rig(project.load_scan()["rig"], name=f"{project.root / 'scan.json'}: rig")
 
 
 def _versions() -> dict[str, Any]:

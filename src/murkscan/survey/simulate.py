@@ -19,7 +19,7 @@ _MESH_SPACING = 0.002
 
 
 def simulate_recording(scene: Scene, out: Path, *, progress: Progress = silent) -> None:
-    """Write frames/ with their times, rig.toml, poses.csv, truth/stripes.parquet and truth/mesh.ply.
+    """Write frames/ with their times, rig.toml, poses.csv, and truth/ with stripes and mesh.
 
     Args:
         scene: What is recorded, by which rig, along which way.

@@ -3,6 +3,8 @@
 from typing import Any
 
 from ..io.images import write_image
+from ..io.text import save_text
+from ..page import Gallery, Note, Picture, Section, render_page
 from ..project import Project
 from ..view import draw_pictures
 from .progress import Progress, silent
@@ -31,5 +33,18 @@ def draw_views(project: Project, *, progress: Progress = silent) -> dict[str, An
             names.append(name)
             progress("view", len(names), len(pictures))
     result = {"pictures": names}
+    save_text(stage.folder / "index.html", _page(project, names))
     stage.finish(result)
     return result
+
+
+def _page(project: Project, names: list[str]) -> str:
+    """Show the pictures side by side."""
+    title = project.load_scan()["recording"]["path"]
+    if not names:
+        empty = Note("There is no surface to draw: no stripe was found in two frames or more.")
+        return render_page("Pictures", [Section("", [empty])], subtitle=title)
+    pictures = [Picture(f"{name}.png", name.replace("-", ", coloured by ")) for name in names]
+    return render_page(
+        "Pictures", [Section("", [Gallery(pictures, is_first_large=True)])], subtitle=title
+    )

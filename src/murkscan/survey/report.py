@@ -1,0 +1,77 @@
+"""Tell how a scan went: one page for people, one file for programs."""
+
+from typing import Any
+
+from ..io.json_files import save_json
+from ..io.text import save_text
+from ..project import STAGES, Project
+from ..report import Recorded, ScanSummary, Shown, as_html, as_json, summarise
+from .scan_rig import load_scan_rig
+
+
+def write_report(project: Project) -> dict[str, Any]:
+    """Run the report stage, from what the other stages have left.
+
+    Returns:
+        Counts: frames, skipped, frames_without_stripe, points.
+
+    Raises:
+        MissingResult: The view stage has not been finished.
+        DeviceError: The disk is full.
+    """
+    stage = project.stage("report", settings={}, inputs={"view": project.finished("view").digest})
+    if (result := stage.result()) is not None:
+        return result
+    summary = _summarise(project)
+    stage.begin()
+    save_json(stage.folder / "report.json", as_json(summary))
+    save_text(stage.folder / "index.html", as_html(summary))
+    result = {
+        "frames": summary.num_frames,
+        "skipped": len(summary.recorded.skips),
+        "frames_without_stripe": summary.num_empty,
+        "points": summary.num_points,
+    }
+    stage.finish(result)
+    return result
+
+
+def _summarise(project: Project) -> ScanSummary:
+    scan, extract = project.load_scan(), project.finished("extract")
+    stages = {name: project.finished(name) for name in STAGES if name != "report"}
+    has_mesh = stages["mesh"].counts()["faces"] > 0
+    recording = scan["recording"]
+    return summarise(
+        Recorded(
+            name=recording["path"],
+            size=tuple(recording["size"]),
+            fields_per_picture=recording["fields_per_picture"],
+            is_timed=recording["is_timed"],
+            skips=[(index, reason) for index, reason in extract.counts()["skips"]],
+        ),
+        load_scan_rig(project),
+        project.load_profile_parts(),
+        frames=project.load_frame_times(),
+        laser=extract.key["settings"]["laser"],
+        trajectory=project.load_trajectory(),
+        cloud=project.load_cloud(),
+        num_outliers=stages["cloud"].counts()["outliers"],
+        mesh=project.load_mesh() if has_mesh else None,
+        settings={name: stage.key["settings"] for name, stage in stages.items()},
+        versions=scan["versions"],
+        durations={name: stage.seconds() for name, stage in stages.items()},
+        pictures=_pictures(project),
+    )
+
+
+def _pictures(project: Project) -> list[Shown]:
+    views = [
+        Shown(f"../view/{name}.png", name.replace("-", ", coloured by "))
+        for name in project.finished("view").counts()["pictures"]
+    ]
+    overlays = sorted((project.root / "extract" / "overlay").glob("*.png"))
+    found = [
+        Shown(f"../extract/overlay/{file.name}", f"what was found: {file.stem.replace('_', ' ')}")
+        for file in overlays
+    ]
+    return views + found

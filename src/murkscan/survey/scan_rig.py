@@ -1,0 +1,14 @@
+"""The rig that a project's recording was made with."""
+
+from ..io.rig_toml import parse_rig
+from ..project import Project
+from ..types.rig import Rig
+
+
+def load_scan_rig(project: Project) -> Rig:
+    """Give the rig as it was when the scan began.
+
+    Raises:
+        MissingResult: The folder holds no scan.
+    """
+    return parse_rig(project.load_scan()["rig"], name=f"{project.root / 'scan.json'}: rig")
