@@ -48,11 +48,11 @@ _STYLE: dict[Any, Any] = {
 }
 
 
-def new_figure(*, width: float = 7.2, height: float = 2.4) -> "tuple[Figure, Axes]":
+def new_figure(*, width: float = 4.8, height: float = 2.5) -> "tuple[Figure, Axes]":
     """Make an empty figure with one pair of axes, in the house style.
 
     Args:
-        width: Width [inch]; the page scales the figure to its own width.
+        width: Width [inch]; the page scales the figure, at this width its text is 10 point high.
         height: Height [inch].
     """
     import matplotlib as mpl

@@ -50,7 +50,7 @@ def _headline(summary: ScanSummary) -> list[Block]:
         facts.append((describe_range(summary.depth), "depth range"))
     if model.size is not None:
         size = " × ".join(f"{1e3 * edge:.0f}" for edge in model.size)
-        facts.append((f"{size} mm", "extent along x, y, z"))
+        facts.append((size, "mm along x, y and z"))
     return [*_verdict(summary), Facts(facts)]
 
 

@@ -1,0 +1,258 @@
+"""The report: numbers that are right, and a page that says just those."""
+
+import json
+import math
+from dataclasses import replace
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+
+from murkscan.report import (
+    Recorded,
+    Shown,
+    Spread,
+    as_html,
+    as_json,
+    frame_statistics,
+    make_timeline,
+    spacing_across,
+    spacing_along,
+    summarise,
+)
+from murkscan.types.camera import Camera
+from murkscan.types.cloud import PointCloud
+from murkscan.types.frame_times import FrameTimes
+from murkscan.types.laser import Fan, Laser
+from murkscan.types.mesh import Mesh
+from murkscan.types.port import DomePort, FlatPort, Layer
+from murkscan.types.profile import Profile
+from murkscan.types.rig import Rig
+from murkscan.types.trajectory import Trajectory
+from murkscan.types.water import Water
+
+STEP, PITCH = 0.004, 0.001
+"""Way from frame to frame, and distance of points on a stripe [m]."""
+RIG = Rig(
+    Camera(size=(40, 30), focal_length=(50.0, 50.0), principal_point=(19.5, 14.5)),
+    (Laser.from_baseline_angle(0.1, 1.2, "y"),),
+)
+
+
+def _profile(frames, *, columns=20, branches=1):
+    """A level surface at 0.5 m; in frame k all points have signal 10 k + column."""
+    frame, column, branch = (
+        grid.ravel() for grid in np.meshgrid(frames, range(columns), range(branches), indexing="ij")
+    )
+    n = len(frame)
+    points = np.stack([PITCH * column, np.zeros(n), 0.5 + 0.1 * branch], axis=1)
+    return Profile(
+        frame=frame.astype(np.uint32),
+        time=frame * 0.04,
+        laser=np.zeros(n, np.uint8),
+        pixels=np.stack([column.astype(float), np.full(n, 12.3)], axis=1),
+        points=points,
+        sigma=np.full(n, 1e-4, np.float32),
+        signal=(10 * frame + column - 5.0 * branch).astype(np.float32),
+        posterior=np.ones(n, np.float32),
+    )
+
+
+def _trajectory(num_frames):
+    times = np.arange(num_frames) * 0.04
+    positions = np.stack([0 * times, STEP * np.arange(num_frames), 0 * times], axis=1)
+    return Trajectory(times, positions, np.tile([1.0, 0, 0, 0], (num_frames, 1)))
+
+
+def _times(num_frames):
+    return FrameTimes(np.arange(num_frames, dtype=np.uint32), np.arange(num_frames) * 0.04)
+
+
+def _cloud(profile, trajectory):
+    n = len(profile)
+    return PointCloud(
+        points=trajectory.transform(profile.points, profile.time),
+        normals=np.zeros((n, 3), np.float32),
+        signal=profile.signal,
+        posterior=profile.posterior,
+        sigma=profile.sigma,
+        sigma_common=np.zeros(n, np.float32),
+        frame=profile.frame.astype(np.int32),
+        scan_line=profile.pixels[:, 0].astype(np.int32),
+        laser=profile.laser,
+    )
+
+
+def _summary(lit=range(2, 8), **changes):
+    profile, trajectory = _profile(lit), _trajectory(10)
+    mesh = Mesh(np.zeros((5, 3)), np.array([[0, 1, 2], [2, 3, 4]]))
+    given = {
+        "frames": _times(10),
+        "trajectory": trajectory,
+        "cloud": _cloud(profile, trajectory),
+        "num_outliers": 3,
+        "mesh": mesh,
+        "settings": {"motion": {"choice": "ConstantSpeed", "speed": 0.1, "along": None}},
+        "versions": {"murkscan": "0.1.0"},
+        "durations": {"extract": 1.25},
+        "pictures": [Shown("../view/isometric.png", "isometric")],
+    }
+    recorded = changes.pop("recorded", Recorded("dive.mkv", (40, 30), skips=[(4, "4.png broke")]))
+    return summarise(recorded, changes.pop("rig", RIG), [profile], **(given | changes))
+
+
+def _dark_summary():
+    return _summary([], cloud=None, mesh=None, num_outliers=0, pictures=[])
+
+
+def _text(page):
+    parts = []
+    parser = HTMLParser()
+    parser.handle_data = parts.append
+    parser.feed(page)
+    return " ".join(" ".join(parts).split())
+
+
+def test_spread_is_that_of_the_numbers_and_passes_over_what_is_none():
+    spread = Spread.from_values(np.array([*np.arange(101.0), math.nan, math.inf]))
+    assert spread == Spread(0.0, 5.0, 50.0, 95.0, 100.0)
+    assert Spread.from_values(np.zeros(0)) == Spread(None, None, None, None, None)
+
+
+def test_spacing_is_that_of_neighbours_only():
+    profile = _profile([0, 1, 4])
+    without_a_column = profile[profile.pixels[:, 0] != 7]
+    across = spacing_across(without_a_column, "y")
+    np.testing.assert_allclose(across, PITCH, rtol=1e-9)
+    assert len(across) == 3 * 17
+    along = spacing_along(without_a_column, _trajectory(5), "y")
+    # Frames 1 and 4 are no neighbours.
+    np.testing.assert_allclose(along, STEP, rtol=1e-9)
+    assert len(along) == 19
+
+
+def test_spacing_follows_the_strongest_branch():
+    across = spacing_across(_profile([0], branches=2), "y")
+    np.testing.assert_allclose(across, PITCH, rtol=1e-9)
+    assert len(across) == 19
+
+
+def test_fields_are_neighbours_of_the_next_field_with_the_same_rows():
+    profile = _profile(range(4))
+    rows = profile.pixels[:, 0].astype(int)
+    fields = profile[rows % 2 == profile.frame % 2]
+    swapped = replace(fields, pixels=np.ascontiguousarray(fields.pixels[:, ::-1]))
+    along = spacing_along(swapped, _trajectory(4), "x")
+    np.testing.assert_allclose(along, 2 * STEP, rtol=1e-9)
+    assert len(along) == 20
+
+
+def test_statistics_of_a_frame_are_those_of_its_points():
+    statistics = frame_statistics(_profile([3, 5], columns=21))
+    np.testing.assert_array_equal(statistics.frame, [3, 5])
+    np.testing.assert_array_equal(statistics.points, [21, 21])
+    np.testing.assert_allclose(statistics.signal, [[31, 40, 49], [51, 60, 69]])
+    np.testing.assert_allclose(statistics.depth, 0.5)
+
+
+def test_a_timeline_counts_every_frame_once_however_many_there_are():
+    number = np.arange(0, 1000, 3)
+    timeline = make_timeline(
+        _times(1000), [frame_statistics(_profile(part)) for part in np.array_split(number, 4)]
+    )
+    assert len(timeline.time) == 400
+    assert timeline.frames.sum() == 1000
+    assert timeline.empty.sum() == 1000 - len(number)
+    assert (timeline.points * timeline.frames).sum() == pytest.approx(20 * len(number))
+    assert np.all(np.diff(timeline.time) > 0)
+    # Steps of two or three frames, of which one at most has points: its own median is the step's.
+    has_points = np.isfinite(timeline.signal[:, 1])
+    np.testing.assert_allclose(np.diff(timeline.signal[has_points, 1]), 30)
+
+
+def test_the_summary_counts_frames_and_points():
+    content = as_json(_summary())
+    assert content["frames"]["read"] == 10
+    assert content["frames"]["without_stripe"] == 4
+    assert content["frames"]["skipped"] == 1
+    assert content["frames"]["skips"] == [{"frame": 4, "reason": "4.png broke"}]
+    assert content["points"] == {"on_profiles": 120, "outliers": 3, "in_cloud": 120}
+    assert content["mesh"] == {"vertices": 5, "faces": 2}
+    assert content["spacing_along_stripe_mm"]["median"] == pytest.approx(1.0)
+    assert content["spacing_along_motion_mm"]["percent_95"] == pytest.approx(4.0)
+    assert content["depth_mm"]["largest"] == pytest.approx(500)
+    assert content["size_mm"] == pytest.approx([19, 20, 0])
+    assert content["timeline"]["points_per_frame"] == [0, 0, 20, 20, 20, 20, 20, 20, 0, 0]
+    assert content["timeline"]["signal_grey_levels_median"][0] is None
+
+
+def test_parts_of_a_scan_give_what_the_whole_gives():
+    whole, parts = _summary(), [_profile([2, 3, 4]), _profile([5, 6, 7])]
+    divided = summarise(
+        whole.recorded, RIG, iter(parts), frames=_times(10), settings={}, versions={}
+    )
+    assert divided.signal == whole.signal
+    assert divided.num_points == whole.num_points
+    np.testing.assert_array_equal(divided.timeline.points, whole.timeline.points)
+
+
+@pytest.mark.parametrize("summary", [_summary(), _dark_summary()], ids=["lit", "dark"])
+def test_the_content_is_json_without_nan(summary):
+    content = as_json(summary)
+    assert json.loads(json.dumps(content, allow_nan=False)) == content
+
+
+def test_the_page_shows_the_same_numbers():
+    text = _text(as_html(_summary()))
+    for words in (
+        "found in 6 of 10 frames and gave 120 points",
+        "1 frame was skipped",
+        "4.png broke",
+        "motion · speed 0.1",
+        "murkscan 0.1.0",
+        "ConstantSpeed",
+        "extract 1.2 s",
+        "isometric",
+        "500 to 500 mm",
+        "baseline 100.00 mm along y",
+    ):
+        assert words in text
+
+
+def test_a_recording_without_a_stripe_is_said_to_have_none():
+    page = as_html(_dark_summary())
+    assert "There is no stripe in this recording: none of its 10 frames shows one" in _text(page)
+    assert "<svg" not in page
+    assert as_json(_dark_summary())["points"]["on_profiles"] == 0
+    assert as_json(_dark_summary())["frames"]["without_stripe"] == 10
+
+
+def test_a_recording_of_one_frame_has_a_report():
+    summary = _summary([0], frames=_times(1), cloud=None, mesh=None)
+    assert "found in 1 of 1 frames" in _text(as_html(summary))
+
+
+def test_a_hostile_name_stays_text():
+    hostile = "<script>alert(1)</script>"
+    recorded = Recorded(hostile, (40, 30), skips=[(0, hostile)])
+    page = as_html(_summary(recorded=recorded, settings={hostile: hostile}))
+    assert "<script" not in page
+    assert _text(page).count(hostile) == 5
+
+
+def test_rigs_under_water_are_described():
+    window = FlatPort(np.array([0.0, 0.0, 1.0]), 0.03, (Layer(0.008, 1.49),))
+    fan = Fan.spread(
+        np.array([0.0, -0.25, 0.0]),
+        np.array([0.0, 0.4, 0.9]),
+        np.array([1.0, 0.0, 0.0]),
+        0.4,
+        window,
+    )
+    dome = DomePort(np.zeros(3), 0.05, 0.005, 1.5)
+    rig = Rig(replace(RIG.camera, port=dome), (Laser.from_sheet(fan),), water=Water())
+    text = _text(as_html(_summary(rig=rig)))
+    assert "a dome of inner radius 50 mm, 5 mm of index 1.5" in text
+    assert "nearest plane of a sheet bent by a flat port at 30 mm, 8 mm of index 1.49" in text
+    # Quan and Fry's index at 20 degrees and 35 PSU for 532 nm.
+    assert "20 °C, 35 PSU, 0 m deep: index 1.34151" in text
