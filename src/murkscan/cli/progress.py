@@ -24,7 +24,8 @@ def progress_bars() -> Iterator["Progress"]:
     )
     from rich.progress import Progress as Bars
 
-    columns: list[ProgressColumn] = [SpinnerColumn(), TextColumn("{task.description:<12}"), BarColumn()]
+    name = TextColumn("{task.description:<12}")
+    columns: list[ProgressColumn] = [SpinnerColumn(), name, BarColumn()]
     columns += [MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn()]
     tasks: dict[str, TaskID] = {}
     with Bars(*columns, console=Console(stderr=True)) as bars:

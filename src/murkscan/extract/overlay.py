@@ -11,6 +11,8 @@ _ZOOM = 2
 """Picture pixels a frame pixel: enough to see where in its pixel a centre lies."""
 _COLOURS = ((0, 230, 120), (255, 150, 0), (90, 160, 255))
 """Red, green, blue of the first branch, the second, and all others."""
+_DIMMEST = 0.25
+"""Share of full range to which a dark frame is brightened at most: a black one stays black."""
 _BITS = 4
 """Binary places of a mark's position."""
 
@@ -26,7 +28,8 @@ def draw_stripe(frame: Frame, stripe: Stripe) -> ColourImage:
         stripe: What was found in it.
     """
     height, width = frame.image.shape
-    top = max(float(np.quantile(frame.image, 0.999)), 1.0)
+    dimmest = _DIMMEST * np.iinfo(frame.image.dtype).max
+    top = max(float(np.quantile(frame.image, 0.999)), dimmest)
     grey = np.clip(frame.image * (200.0 / top), 0, 255).astype(np.uint8)
     size = (width * _ZOOM, height * frame.row_step * _ZOOM)
     large = cv2.resize(grey, size, interpolation=cv2.INTER_NEAREST)

@@ -9,6 +9,8 @@ from ..project import Project
 from ..types.frame import Frame
 from ..types.stripe import Stripe
 
+_POOR = "_poor"
+"""What the names of the poorest frames' pictures end in."""
 _POOREST = 4
 """Overlays kept of frames with the fewest points."""
 
@@ -21,13 +23,21 @@ def draw_overlays(project: Project, found: Sequence[tuple[Frame, Stripe]], *, st
     others = [pair for pair in found if pair[0].index % step != step // 2]
     if others:
         frame, stripe = min(others, key=lambda pair: len(pair[1]))
-        name = f"poor_{len(stripe):06d}_points_{frame.index:06d}.png"
-        write_image(_folder(project) / name, draw_stripe(frame, stripe))
+        path = _folder(project) / f"{frame.index:06d}{_POOR}.png"
+        write_image(path, draw_stripe(frame, stripe))
 
 
 def keep_overlays(project: Project) -> None:
     """Of the poorest frames of all chunks keep the poorest few."""
-    for file in sorted(_folder(project).glob("poor_*.png"))[_POOREST:]:
+    notes = [note for _, note in project.load_stripe_notes()]
+    points = {
+        index: count
+        for note in notes
+        for index, count in zip(note["frames"], note["points"], strict=True)
+    }
+    poor = list(_folder(project).glob(f"*{_POOR}.png"))
+    poor.sort(key=lambda file: points.get(int(file.stem.removesuffix(_POOR)), 0))
+    for file in poor[_POOREST:]:
         file.unlink()
 
 

@@ -71,7 +71,10 @@ def _pictures(project: Project) -> list[Shown]:
     ]
     overlays = sorted((project.root / "extract" / "overlay").glob("*.png"))
     found = [
-        Shown(f"../extract/overlay/{file.name}", f"what was found: {file.stem.replace('_', ' ')}")
+        Shown(
+            f"../extract/overlay/{file.name}",
+            f"what was found in frame {int(file.stem.split('_')[0])}",
+        )
         for file in overlays
     ]
     return views + found

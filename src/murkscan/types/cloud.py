@@ -3,6 +3,7 @@
 from dataclasses import dataclass, fields
 
 from .arrays import (
+    Indices,
     Mask,
     Normals,
     Points,
@@ -40,6 +41,6 @@ class PointCloud:
         """Count the points."""
         return len(self.points)
 
-    def __getitem__(self, which: Mask | slice) -> "PointCloud":
+    def __getitem__(self, which: Mask | Indices | slice) -> "PointCloud":
         """Pick some of the points."""
         return PointCloud(*(getattr(self, column.name)[which] for column in fields(self)))

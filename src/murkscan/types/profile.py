@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from .arrays import FrameNumbers, Mask, Pixels, Points, Ratios, Scalars, SmallNumbers
+from .arrays import FrameNumbers, Indices, Mask, Pixels, Points, Ratios, Scalars, SmallNumbers
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +41,7 @@ class Profile:
             *(np.concatenate([getattr(part, c.name) for part in parts]) for c in fields(cls))
         )
 
-    def __getitem__(self, which: Mask | slice) -> "Profile":
+    def __getitem__(self, which: Mask | Indices | slice) -> "Profile":
         """Pick some of the points."""
         return Profile(*(getattr(self, column.name)[which] for column in fields(self)))
 

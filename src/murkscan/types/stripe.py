@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from .arrays import FrameNumbers, Mask, Pixels, Ratios, Scalars, SmallNumbers
+from .arrays import FrameNumbers, Indices, Mask, Pixels, Ratios, Scalars, SmallNumbers
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +36,7 @@ class Stripe:
         """Count the centres."""
         return len(self.frame)
 
-    def __getitem__(self, which: Mask | slice) -> "Stripe":
+    def __getitem__(self, which: Mask | Indices | slice) -> "Stripe":
         """Pick some of the centres."""
         return Stripe(*(getattr(self, column.name)[which] for column in fields(self)))
 

@@ -1,0 +1,21 @@
+"""A whole scan: the main path of the package, on a recording that is simulated first."""
+
+from pathlib import Path
+from tempfile import mkdtemp
+
+import murkscan as ms
+from murkscan.simulate import hull_scene
+from murkscan.survey.simulate import simulate_recording
+
+folder = Path(mkdtemp(prefix="murkscan-"))
+simulate_recording(hull_scene(num_frames=100), folder / "recording")
+
+# From here on as with a recording of your own.
+rig = ms.load_rig(folder / "recording" / "rig.toml")
+recording = ms.open_recording(folder / "recording" / "frames", wavelength=rig.wavelength)
+motion = ms.ConstantSpeed(0.1, along=rig.lasers[0].axis)
+project = ms.scan(recording, rig, motion, out=folder / "scan")
+cloud, mesh = project.load_cloud(), project.load_mesh()
+
+print(f"{len(cloud)} points, {len(mesh.faces)} triangles")
+print(f"open {project.root / 'report' / 'index.html'}")
