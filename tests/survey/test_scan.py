@@ -186,7 +186,7 @@ def test_a_corrupt_picture_in_the_middle_is_skipped_and_counted(hull, tmp_path):
 
 def test_the_demo_is_within_a_tenth_of_a_millimetre_of_the_truth(tmp_path):
     _, errors = run_demo(tmp_path)
-    assert errors.count > 50_000
+    assert errors.count > 45_000  # of 45 822 true centres
     assert errors.rms < 1e-4  # the bar that the project sets itself
 
 
