@@ -60,6 +60,8 @@ def load_mesh(path: Path) -> Mesh:
     # Which error a damaged file ends in is up to trimesh's readers: any.
     except Exception as error:
         raise FormatError(f"{path} is not a {kind.upper()} file that can be read.") from error
+    if len(faces) == 0 or not np.isfinite(vertices).all() or faces.max() >= len(vertices):
+        raise FormatError(f"{path} has no triangles, or some without a place; it is damaged.")
     return Mesh(vertices * _GLB_FROM_OURS if kind == "glb" else vertices, faces)
 
 
@@ -70,7 +72,7 @@ def _kind(path: Path) -> str:
 
 
 def _as_ply(mesh: Mesh) -> bytes:
-    """Write vertices in double precision, which trimesh does not: at sea they have large numbers."""
+    """Write vertices in double precision, which trimesh does not; at sea numbers are large."""
     faces = np.empty(len(mesh.faces), [("count", "u1"), ("corners", "<i4", 3)])
     faces["count"], faces["corners"] = 3, mesh.faces
     header = (

@@ -16,15 +16,15 @@ from .base import AbstractMesher, drop_unused_vertices, empty_mesh
 @final
 @dataclass(frozen=True)
 class GridMesh(AbstractMesher):
-    """Join each point to its neighbours along its profile and across to the next one.
+    r"""Join each point to its neighbours along its profile and across to the next one.
 
     Every vertex is a measured point, and nothing is smoothed. The surface is cut at depth jumps and
     open where a profile or a scan line is missing. Four neighbours make two triangles, three make
     one::
 
-        a ─── b      split along the shorter diagonal        a ─── b
-        │  ╲  │                                              │  ╱
-        c ─── d                                              c      (d is missing)
+        a --- b                                              a --- b
+        | \   |      split along the shorter diagonal        |   /
+        c --- d                                              c      (d is missing)
     """
 
     max_jump: float | None = None

@@ -50,7 +50,7 @@ class Poisson(AbstractMesher):
         open3d = _import_open3d()
         grid = ScanGrid.from_cloud(cloud)
         with_normal = cloud[np.any(cloud.normals != 0, axis=1)]
-        if len(with_normal) < _FEWEST:
+        if len(with_normal) < _FEWEST or grid.usual_across == 0:
             return empty_mesh()
         mesh = _reconstruct(open3d, with_normal, self.depth)
         reach = _SUPPORT * max(grid.usual_across, grid.usual_along)
@@ -91,5 +91,6 @@ def _face_normals(mesh: Mesh, cloud: PointCloud) -> Mesh:
 
 def _trim(mesh: Mesh, cloud: PointCloud, reach: float) -> Mesh:
     distance, _ = cKDTree(cloud.points).query(mesh.vertices)
-    seen = (distance <= reach)[mesh.faces].all(axis=1)
+    near = np.asarray(distance) <= reach
+    seen = near[mesh.faces].all(axis=1)
     return drop_unused_vertices(Mesh(mesh.vertices, mesh.faces[seen]))

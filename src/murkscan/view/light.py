@@ -7,7 +7,7 @@ from .window import SAMPLES, Depths, Relief
 
 _KEY = np.array([-0.52, -0.62, -0.59])
 """Towards the main light: the upper left of the picture, in front."""
-_AMBIENT, _KEY_LIGHT, _HEAD_LIGHT = 0.24, 0.76, 0.10
+_AMBIENT, _KEY_LIGHT, _HEAD_LIGHT = 0.22, 0.74, 0.10
 _WRAP = 2.0
 """Power of the main light's fall-off: it reaches round to the far side, where no slope is black."""
 _HOLLOW_RADII = (3, 9, 27)
@@ -44,9 +44,9 @@ def _find_hollows(relief: Relief) -> Depths:
     return np.where(seen, _DARKEST * np.minimum(lost, 1), 0.0)
 
 
-def _blur(image: np.ndarray, radius: float) -> np.ndarray:
+def _blur(image: np.ndarray, radius: int) -> np.ndarray:
     """Blur by three box filters, which is near a Gaussian at a fraction of its cost."""
-    size = 2 * round(radius) + 1
+    size = 2 * radius + 1
     for _ in range(3):
         image = cv2.blur(image, (size, size), borderType=cv2.BORDER_REFLECT)
     return image

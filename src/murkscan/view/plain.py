@@ -8,8 +8,8 @@ import numpy as np
 from ..types.arrays import Mask, Points
 from .base import AbstractColours, Colours, Legend
 
-_OUTSIDE = (0.80, 0.79, 0.76)
-_INSIDE = (0.56, 0.64, 0.74)
+_OUTSIDE = (0.89, 0.87, 0.83)
+_INSIDE = (0.62, 0.71, 0.83)
 
 
 @final

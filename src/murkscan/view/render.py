@@ -63,7 +63,9 @@ def _require_something(surface: Mesh | PointCloud, points: Points) -> None:
         raise NotEnoughData("There is nothing to draw: the surface has no points or no triangles.")
     broken = len(points) - int(np.isfinite(points).all(axis=1).sum())
     if broken:
-        raise InputError(f"{broken} of {len(points)} points to draw are not finite; leave them out.")
+        raise InputError(
+            f"{broken} of {len(points)} points to draw are not finite; leave them out."
+        )
 
 
 def _develop(

@@ -33,7 +33,7 @@ def splat_points(points: Points, normals: Directions, window: Window) -> Relief:
         owner[sample[closer]] = order[closer]
         nearest[sample[closer]] = depth[closer]
     shown = np.where(normals.any(axis=1)[:, None], normals, [0.0, 0.0, -1.0])
-    outside = shown[:, 2] <= 0
+    outside = np.asarray(shown[:, 2] <= 0)
     shown = np.where(outside[:, None], shown, -shown)
     seen = owner >= 0
     return Relief(

@@ -26,7 +26,7 @@ def cast_mesh(mesh: Mesh, points: Points, window: Window) -> Relief:
     """
     # Embree counts in single precision: offsets from the surface's own corner keep it exact.
     corner = np.floor(points.min(axis=0))
-    width, height = (np.ceil(points.max(axis=0) - corner)[:2] + 1).astype(int)
+    width, height = (np.ceil(points.max(axis=0) - corner)[:2] + 1).astype(int).tolist()
     hits = _cast_rays(points - corner, mesh.faces, width, height)
     number = hits["primID"]
     seen = np.flatnonzero(number >= 0)
@@ -38,7 +38,9 @@ def cast_mesh(mesh: Mesh, points: Points, window: Window) -> Relief:
     # Outside is where the triangle itself, not the smoothed normal, faces the viewer.
     outside = _flat_towards(points, mesh.faces)[number]
     normal *= np.where(outside, 1.0, -1.0)[:, None]
-    return _place(window, corner, (seen // width, seen % width), hits["tfar"][seen], normal, outside)
+    return _place(
+        window, corner, (seen // width, seen % width), hits["tfar"][seen], normal, outside
+    )
 
 
 def vertex_normals(points: Points, faces: Faces) -> Directions:

@@ -14,7 +14,7 @@ Seen = Bool[np.ndarray, "h w"]
 
 SAMPLES = 2
 """Samples a pixel along each side."""
-_SIDE, _TOP, _BOTTOM, _BAR = 0.04, 0.08, 0.13, 0.16
+_SIDE, _TOP, _BOTTOM, _BAR = 0.04, 0.08, 0.15, 0.16
 """Shares of the picture kept free for the writing: at the sides, and on the right for a colour
 bar."""
 

@@ -45,8 +45,8 @@ def write_on(image: ColourImage, view: View, window: Window, legend: Legend | No
     _write_axes(figure, view, window, points)
     if legend is not None:
         _write_colours(figure, legend, points)
-    canvas.draw()
-    return np.ascontiguousarray(np.asarray(canvas.buffer_rgba())[..., :3])
+    canvas.draw()  # type: ignore[no-untyped-call]
+    return np.ascontiguousarray(np.asarray(canvas.buffer_rgba())[..., :3])  # type: ignore[no-untyped-call]
 
 
 def _write_scale(figure: Figure, window: Window, points: float) -> None:
@@ -75,8 +75,8 @@ def round_down(value: float) -> float:
 def _write_axes(figure: Figure, view: View, window: Window, points: float) -> None:
     """Draw the world's axes as the view shows them; one that points at the viewer is a dot."""
     width, height = window.size
-    length = 1.7 * _TEXT * height
-    middle = np.array([width - 3.2 * length, 2.0 * length])
+    length = 1.35 * _TEXT * height
+    middle = np.array([width - 3.6 * length, 2.0 * length])
     for name, axis in zip("xyz", view.view_from_world.T, strict=True):
         step = np.array([axis[0], -axis[1]]) * length
         if np.hypot(*step) < 0.1 * length:
@@ -86,7 +86,9 @@ def _write_axes(figure: Figure, view: View, window: Window, points: float) -> No
         )
         line = Line2D(*np.stack([start, end], axis=1), color=_AXES[name], linewidth=points / 7)
         figure.add_artist(line)
-        figure.text(*letter, name, color=_AXES[name], size=points, ha="center", va="center")
+        figure.text(
+            letter[0], letter[1], name, color=_AXES[name], size=points, ha="center", va="center"
+        )
 
 
 def _write_colours(figure: Figure, legend: Legend, points: float) -> None:
@@ -96,5 +98,5 @@ def _write_colours(figure: Figure, legend: Legend, points: float) -> None:
     bar.ax.invert_yaxis()
     bar.ax.tick_params(labelsize=0.9 * points, colors=_INK, width=1.5, length=6)
     bar.ax.ticklabel_format(useOffset=False)
-    bar.outline.set_visible(False)  # type: ignore[operator]
+    bar.outline.set_visible(False)
     figure.text(0.875, 0.875, legend.label, size=points, color=_INK, va="bottom", ha="left")

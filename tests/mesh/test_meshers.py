@@ -1,0 +1,157 @@
+"""What every mesher promises; a new one joins the list and inherits the tests."""
+
+import importlib.util
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from murkscan.errors import InputError, MissingDependency
+from murkscan.mesh import GridMesh, Poisson
+
+from ..scans import cylinder, holed, plane, scan_cloud, sphere, step
+
+HAS_OPEN3D = importlib.util.find_spec("open3d") is not None
+WITH_OPEN3D = pytest.mark.skipif(not HAS_OPEN3D, reason='the extra "murkscan[mesh]" is absent')
+MESHERS = [
+    pytest.param(GridMesh(), id="grid"),
+    pytest.param(Poisson(depth=7), id="poisson", marks=WITH_OPEN3D),
+]
+
+
+def corners(mesh):
+    return (mesh.vertices[corner] for corner in mesh.faces.T)
+
+
+def face_normals(mesh):
+    a, b, c = corners(mesh)
+    return np.cross(b - a, c - a)
+
+
+def edges(mesh):
+    pairs = np.concatenate([mesh.faces[:, [i, (i + 1) % 3]] for i in range(3)])
+    return np.unique(np.sort(pairs, axis=1), axis=0, return_counts=True)
+
+
+@pytest.mark.parametrize("mesher", MESHERS)
+@pytest.mark.parametrize("interlaced", [False, True])
+@pytest.mark.parametrize("surface", [plane, sphere, cylinder])
+def test_the_mesh_lies_on_the_surface_and_faces_the_camera(mesher, surface, interlaced):
+    mesh = mesher.mesh(scan_cloud(surface, interlaced=interlaced))
+    middle = sum(corners(mesh)) / 3
+    # Within 0.1 m of the steep rim a chord of 1 mm on a radius of 40 mm sinks by 1²/(8·40) mm; the
+    # octree of depth 7 has cells of 1 mm and its surface errs by a part of that.
+    off = middle[:, 2] - surface(middle[:, 0], middle[:, 1])
+    inner = np.hypot(middle[:, 0], middle[:, 1]) < 0.03
+    assert np.percentile(np.abs(off[inner]), 99) < (2e-5 if mesher == GridMesh() else 2e-4)
+    assert np.mean(face_normals(mesh)[inner, 2] < 0) > 0.999
+
+
+@pytest.mark.parametrize("mesher", MESHERS)
+def test_a_hole_stays_open(mesher):
+    mesh = mesher.mesh(scan_cloud(holed))
+    middle = sum(corners(mesh)) / 3
+    # Poisson is trimmed two profiles' distance from the nearest point.
+    reach = 0.0 if mesher == GridMesh() else 2.5e-3
+    assert np.hypot(middle[:, 0], middle[:, 1]).min() > 0.02 - reach - 1e-3
+
+
+@pytest.mark.parametrize("mesher", MESHERS)
+def test_every_vertex_has_a_triangle_and_no_triangle_a_vertex_twice(mesher):
+    mesh = mesher.mesh(scan_cloud(holed, spacing=2e-3, noise=2e-4))
+    np.testing.assert_array_equal(np.unique(mesh.faces), np.arange(len(mesh.vertices)))
+    assert (np.diff(np.sort(mesh.faces, axis=1), axis=1) > 0).all()
+
+
+@pytest.mark.parametrize("mesher", MESHERS)
+def test_the_same_cloud_gives_the_same_mesh(mesher):
+    cloud = scan_cloud(sphere, spacing=2e-3, noise=2e-4)
+    first, second = mesher.mesh(cloud), mesher.mesh(cloud)
+    np.testing.assert_array_equal(first.vertices, second.vertices)
+    np.testing.assert_array_equal(first.faces, second.faces)
+
+
+@pytest.mark.parametrize("mesher", MESHERS)
+@pytest.mark.parametrize("frames", [0, 1])
+def test_a_cloud_without_two_profiles_has_no_surface(mesher, frames):
+    cloud = scan_cloud(plane)
+    mesh = mesher.mesh(cloud[cloud.frame < frames])
+    assert mesh.vertices.shape == (0, 3)
+    assert mesh.faces.shape == (0, 3)
+
+
+@pytest.mark.parametrize("mesher", MESHERS)
+def test_a_point_that_is_not_finite_is_refused(mesher):
+    cloud = scan_cloud(plane, spacing=0.01)
+    cloud.points[3, 1] = np.inf
+    with pytest.raises(InputError, match="1 of 2400 points are not finite"):
+        mesher.mesh(cloud)
+
+
+@pytest.mark.parametrize("interlaced", [False, True])
+def test_the_grid_mesh_of_a_full_grid_is_two_triangles_a_cell(interlaced):
+    cloud = scan_cloud(plane, interlaced=interlaced)
+    mesh = GridMesh().mesh(cloud)
+    lines = 100 if interlaced else 200
+    np.testing.assert_array_equal(mesh.vertices, cloud.points)
+    assert len(mesh.faces) == 2 * (lines - 1) * 119
+    _, shared = edges(mesh)
+    assert shared.max() == 2
+
+
+def test_the_grid_mesh_is_cut_at_a_depth_jump():
+    depths = GridMesh().mesh(scan_cloud(step)).vertices[:, 2]
+    mesh = GridMesh().mesh(scan_cloud(step))
+    assert np.ptp(depths) > 0.029
+    assert np.ptp(mesh.vertices[mesh.faces][:, :, 2], axis=1).max() < 1e-9
+
+
+def test_the_grid_mesh_reaches_over_the_jump_that_it_is_told_to():
+    mesh = GridMesh(max_jump=0.04).mesh(scan_cloud(step))
+    assert np.ptp(mesh.vertices[mesh.faces][:, :, 2], axis=1).max() == pytest.approx(0.03)
+
+
+def test_the_grid_mesh_bridges_neither_a_missing_profile_nor_a_missing_scan_line():
+    cloud = scan_cloud(plane)
+    cloud = cloud[(cloud.frame != 60) & (cloud.scan_line != 90)]
+    mesh = GridMesh().mesh(cloud)
+    assert len(mesh.faces) == 2 * (59 + 58) * (89 + 108)
+
+
+def test_a_missing_point_costs_half_of_each_cell_around_it():
+    cloud = scan_cloud(plane)
+    whole = GridMesh().mesh(cloud)
+    mesh = GridMesh().mesh(cloud[~((cloud.frame == 60) & (cloud.scan_line == 90))])
+    assert len(whole.faces) - len(mesh.faces) == 4
+    _, shared = edges(mesh)
+    assert shared.max() == 2
+
+
+def test_two_branches_make_two_surfaces():
+    cloud = scan_cloud(plane, spacing=2e-3)
+    behind = replace(cloud, points=cloud.points + np.array([0.0, 0.0, 0.1]))
+    names = cloud.__dataclass_fields__
+    both = type(cloud)(*(np.concatenate([getattr(c, n) for c in (cloud, behind)]) for n in names))
+    mesh = GridMesh().mesh(both)
+    assert len(mesh.faces) == 2 * len(GridMesh().mesh(cloud).faces)
+    assert np.ptp(mesh.vertices[mesh.faces][:, :, 2], axis=1).max() < 0.01
+
+
+def test_noise_does_not_tear_the_grid_mesh():
+    # Noise as large as the distance between scan lines still leaves 99 % of the triangles.
+    whole = GridMesh().mesh(scan_cloud(plane))
+    noisy = GridMesh().mesh(scan_cloud(plane, noise=6e-4))
+    assert len(noisy.faces) > 0.99 * len(whole.faces)
+
+
+def test_settings_without_sense_are_refused():
+    with pytest.raises(InputError, match="max_jump"):
+        GridMesh(max_jump=0.0)
+    with pytest.raises(InputError, match="depth"):
+        Poisson(depth=40)
+
+
+@pytest.mark.skipif(HAS_OPEN3D, reason='the extra "murkscan[mesh]" is there')
+def test_poisson_names_the_extra_that_it_needs():
+    with pytest.raises(MissingDependency, match=r'pip install "murkscan\[mesh\]"'):
+        Poisson().mesh(scan_cloud(plane, spacing=0.01))

@@ -1,0 +1,118 @@
+"""Clean scans of analytic surfaces: camera rays meet the sheet of light where the surface is."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from murkscan.cloud import merge_profiles
+from murkscan.types.cloud import PointCloud
+from murkscan.types.profile import Profile
+from murkscan.types.trajectory import Trajectory
+
+Surface = Callable[[np.ndarray, np.ndarray], np.ndarray]
+"""Depth at x and y [m], NaN where there is none."""
+FOCAL_LENGTH, BASELINE, COTANGENT = 800.0, 0.2, 0.4
+
+
+def plane(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    return 0.5 + 0.3 * x - 0.2 * y
+
+
+def sphere(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    with np.errstate(invalid="ignore"):
+        return 0.5 - np.sqrt(0.05**2 - x * x - y * y)
+
+
+def cylinder(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    with np.errstate(invalid="ignore"):
+        return 0.5 + 0 * x - np.sqrt(0.04**2 - y * y)
+
+
+def step(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Two level planes 30 mm apart."""
+    return np.where(y > 0, 0.5, 0.47) + 0 * x
+
+
+def holed(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """A wall with a round hole of 20 mm radius."""
+    return np.where(x * x + y * y < 0.02**2, np.nan, 0.5)
+
+
+def scan(
+    surface: Surface,
+    *,
+    spacing: float = 1e-3,
+    noise: float = 0.0,
+    interlaced: bool = False,
+    num_rows: int = 200,
+) -> tuple[Profile, Trajectory]:
+    """Move over 0.12 m of a surface along x, with the laser on the x axis.
+
+    Args:
+        surface: Its depth.
+        spacing: Distance between profiles [m].
+        noise: Standard deviation of the range, which the profile states as its sigma [m].
+        interlaced: Whether even frames see the even rows only, and odd ones the odd.
+        num_rows: Scan lines.
+    """
+    num_frames = round(0.12 / spacing)
+    rows = np.arange(num_rows)
+    seen = [
+        _meet(surface, rows[k % 2 :: 2] if interlaced else rows, spacing * k - 0.06, num_rows)
+        for k in range(num_frames)
+    ]
+    points = np.concatenate([points for points, _ in seen])
+    random = np.random.default_rng(0).standard_normal(len(points))
+    points *= (1 + noise * random / np.linalg.norm(points, axis=1))[:, None]
+    frame = np.repeat(np.arange(num_frames), [len(points) for points, _ in seen])
+    profile = as_profile(points, frame, np.concatenate([row for _, row in seen]), sigma=noise)
+    ends = np.array([[-0.06, 0.0, 0.0], [spacing * num_frames - 0.06, 0.0, 0.0]])
+    times = np.array([0.0, num_frames * 0.04])
+    return profile, Trajectory(times, ends, np.tile([1.0, 0.0, 0.0, 0.0], (2, 1)))
+
+
+def as_profile(
+    points: np.ndarray, frame: np.ndarray, row: np.ndarray, *, sigma: float = 0.0
+) -> Profile:
+    """Give points of the camera frame [m] what else a profile has."""
+    ones = np.ones(len(points), np.float32)
+    return Profile(
+        frame=frame.astype(np.uint32),
+        time=frame * 0.04,
+        laser=np.zeros(len(points), np.uint8),
+        pixels=np.stack([np.full(len(points), 400.0), row.astype(float)], axis=1),
+        points=points,
+        sigma=ones * np.float32(sigma),
+        signal=ones * 100,
+        posterior=ones,
+    )
+
+
+def scan_cloud(surface: Surface, **settings: float | bool) -> PointCloud:
+    """Scan a surface and merge the profiles."""
+    profile, trajectory = scan(surface, **settings)
+    return merge_profiles(profile, trajectory, axis="x")
+
+
+def _meet(
+    surface: Surface, rows: np.ndarray, x0: float, num_rows: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Find where the sheet is on the surface in each row: step towards it, then bisect."""
+    slope = (rows - (num_rows - 1) / 2)[:, None] / FOCAL_LENGTH
+
+    def beyond(z: np.ndarray) -> np.ndarray:
+        return z - surface(x0 - BASELINE + z * COTANGENT, slope * z)
+
+    steps = np.repeat(np.linspace(0.4, 0.6, 401)[None], len(rows), axis=0)
+    gap = beyond(steps)
+    enters = (gap[:, :-1] < 0) & (gap[:, 1:] >= 0)
+    first = enters.argmax(axis=1)
+    low, high = steps[0, first][:, None], steps[0, first + 1][:, None]
+    for _ in range(40):
+        middle = (low + high) / 2
+        is_beyond = beyond(middle) >= 0
+        low, high = np.where(is_beyond, low, middle), np.where(is_beyond, middle, high)
+    # At a step the sign changes without the depth being met.
+    met = enters.any(axis=1) & (np.abs(beyond(low)) < 1e-6)[:, 0]
+    z, y = low[met, 0], (slope * low)[met, 0]
+    return np.stack([z * COTANGENT - BASELINE, y, z], axis=1), rows[met]
