@@ -32,7 +32,8 @@ def splat_points(points: Points, normals: Directions, window: Window) -> Relief:
         closer = depth < nearest[sample]
         owner[sample[closer]] = order[closer]
         nearest[sample[closer]] = depth[closer]
-    shown = np.where(normals.any(axis=1)[:, None], normals, [0.0, 0.0, -1.0])
+    known = np.any(normals != 0, axis=1, keepdims=True)
+    shown = np.where(known, normals, [0.0, 0.0, -1.0])
     outside = np.asarray(shown[:, 2] <= 0)
     shown = np.where(outside[:, None], shown, -shown)
     seen = owner >= 0
