@@ -78,9 +78,10 @@ def main() -> None:
             Figure("equation (4) on arrays", whole * 1e3, "ms"),
             Figure("ray and sheet with distortion", sheet * 1e3, "ms"),
         ],
-        note="The loop takes the pixels from an array, as a skeleton comes; the prepared one from a "
-        "list of Python numbers, the fastest form that a loop can have. Each time is the shortest of five runs in one process. The paper claims 10 : 1 from "
-        "running in parallel on all of its cores.",
+        note="The loop takes the pixels from an array, as a skeleton comes; the prepared one from "
+        "a list of Python numbers, the fastest form that a loop can have. Each time is the "
+        "shortest of five runs in one process. The paper claims 10 : 1 from running in parallel on "
+        "all of its cores.",
     )
 
 
