@@ -1,11 +1,9 @@
 """Gray gravity with sigma on frames in memory, as a multiple of merely reading them."""
 
-import time
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
-from harness import Figure, tell
+from harness import Figure, best_time, tell
 
 from murkscan.extract import GrayGravity
 from murkscan.types.background import Background
@@ -15,7 +13,7 @@ from murkscan.types.laser import Laser
 from murkscan.types.rig import Rig
 
 SIZE = (2048, 1088)
-FRAMES, REPEATS, CHUNK = 64, 7, 8
+FRAMES, CHUNK = 64, 8
 
 
 def draw_frames() -> list[Frame]:
@@ -30,16 +28,6 @@ def draw_frames() -> list[Frame]:
         image = np.clip(np.rint(light), 0, 255).astype(np.uint8)
         frames.append(Frame(image, index, index / 100))
     return frames
-
-
-def best_time(run: Callable[[], object]) -> float:
-    """Give the shortest of several runs [s]."""
-    times = []
-    for _ in range(REPEATS):
-        start = time.perf_counter()
-        run()
-        times.append(time.perf_counter() - start)
-    return min(times)
 
 
 def main() -> None:

@@ -2,7 +2,8 @@
 
 import json
 import sys
-from collections.abc import Sequence
+import time
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -34,6 +35,16 @@ class Figure:
         bar = bar if self.at_least is None else f"≥ {self.at_least:g}"
         met = "" if not bar else "**missed**" if self.is_missed else "met"
         return f"| {self.name} | {self.value:.4g} {self.unit} | {bar} | {met} |"
+
+
+def best_time(run: Callable[[], object], *, repeats: int = 7) -> float:
+    """Give the shortest of several runs [s]: the one that others on the machine disturbed least."""
+    times = []
+    for _ in range(repeats):
+        start = time.perf_counter()
+        run()
+        times.append(time.perf_counter() - start)
+    return min(times)
 
 
 def tell(name: str, title: str, figures: Sequence[Figure], *, note: str = "") -> None:

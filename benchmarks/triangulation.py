@@ -1,12 +1,11 @@
 """Triangulate a million skeleton pixels: whole arrays against the paper's loop over pixels."""
 
 import math
-import time
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
-from harness import Figure, tell
+from harness import Figure, best_time, tell
 
 from murkscan.triangulate import BaselineAngle, RaySheet
 from murkscan.types.camera import Camera
@@ -14,7 +13,6 @@ from murkscan.types.laser import Laser
 from murkscan.types.rig import Rig
 
 COUNT = 1_000_000
-REPEATS = 5
 CHUNK = 50_000
 
 LASER = Laser.from_baseline_angle(0.2, math.radians(65), "y")
@@ -36,16 +34,6 @@ def paper_loop(pixels: Iterable[tuple[float, float]], rig: Rig) -> list[tuple[fl
         depth = baseline / (cot - y)
         points.append((x * depth, y * depth, depth))
     return points
-
-
-def best_time(run: Callable[[], object]) -> float:
-    """Give the shortest of several runs [s]: the one that others disturbed least."""
-    times = []
-    for _ in range(REPEATS):
-        start = time.perf_counter()
-        run()
-        times.append(time.perf_counter() - start)
-    return min(times)
 
 
 def main() -> None:
@@ -80,7 +68,7 @@ def main() -> None:
         ],
         note="The loop takes the pixels from an array, as a skeleton comes; the prepared one from "
         "a list of Python numbers, the fastest form that a loop can have. Each time is the "
-        "shortest of five runs in one process. The paper claims 10 : 1 from running in parallel on "
+        "shortest of seven runs in one process. The paper claims 10 : 1 from running in parallel on "
         "all of its cores.",
     )
 

@@ -1,25 +1,10 @@
 """Thinning against OpenCV contrib's: the same pixels, and how much sooner."""
 
-import time
-from collections.abc import Callable
-
 import cv2
 import numpy as np
-from harness import Figure, tell
+from harness import Figure, best_time, tell
 
 from murkscan._kernels.thinning import thin_zhang_suen
-
-REPEATS = 7
-
-
-def best_time(run: Callable[[], object]) -> float:
-    """Give the shortest of several runs [s]."""
-    times = []
-    for _ in range(REPEATS):
-        start = time.perf_counter()
-        run()
-        times.append(time.perf_counter() - start)
-    return min(times)
 
 
 def opencv(binary: np.ndarray) -> np.ndarray:
