@@ -68,8 +68,8 @@ def main() -> None:
         ],
         note="The loop takes the pixels from an array, as a skeleton comes; the prepared one from "
         "a list of Python numbers, the fastest form that a loop can have. Each time is the "
-        "shortest of seven runs in one process. The paper claims 10 : 1 from running in parallel on "
-        "all of its cores.",
+        "shortest of seven runs in one process. The paper claims 10 : 1 from running in parallel "
+        "on all of its cores.",
     )
 
 
