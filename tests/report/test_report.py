@@ -122,29 +122,46 @@ def test_spread_is_that_of_the_numbers_and_passes_over_what_is_none():
 def test_spacing_is_that_of_neighbours_only():
     profile = _profile([0, 1, 4])
     without_a_column = profile[profile.pixels[:, 0] != 7]
-    across = spacing_across(without_a_column, "y")
-    np.testing.assert_allclose(across, PITCH, rtol=1e-9)
-    assert len(across) == 3 * 17
-    along = spacing_along(without_a_column, _trajectory(5), "y")
+    along = spacing_along(without_a_column, "y")
+    np.testing.assert_allclose(along, PITCH, rtol=1e-9)
+    assert len(along) == 3 * 17
+    across = spacing_across(without_a_column, _trajectory(5), "y")
     # Frames 1 and 4 are no neighbours.
-    np.testing.assert_allclose(along, STEP, rtol=1e-9)
-    assert len(along) == 19
-
-
-def test_spacing_follows_the_strongest_branch():
-    across = spacing_across(_profile([0], branches=2), "y")
-    np.testing.assert_allclose(across, PITCH, rtol=1e-9)
+    np.testing.assert_allclose(across, STEP, rtol=1e-9)
     assert len(across) == 19
 
 
-def test_fields_are_neighbours_of_the_next_field_with_the_same_rows():
-    profile = _profile(range(4))
+def test_spacing_follows_the_strongest_branch():
+    along = spacing_along(_profile([0], branches=2), "y")
+    np.testing.assert_allclose(along, PITCH, rtol=1e-9)
+    assert len(along) == 19
+
+
+def _fields(frames):
+    """The same surface, the stripe along columns, in the fields of interlaced video."""
+    profile = _profile(frames)
     rows = profile.pixels[:, 0].astype(int)
     fields = profile[rows % 2 == profile.frame % 2]
-    swapped = replace(fields, pixels=np.ascontiguousarray(fields.pixels[:, ::-1]))
-    along = spacing_along(swapped, _trajectory(4), "x")
-    np.testing.assert_allclose(along, 2 * STEP, rtol=1e-9)
-    assert len(along) == 20
+    return replace(fields, pixels=np.ascontiguousarray(fields.pixels[:, ::-1]))
+
+
+def test_fields_are_neighbours_of_the_next_field_with_the_same_rows():
+    across = spacing_across(_fields(range(4)), _trajectory(4), "x")
+    np.testing.assert_allclose(across, 2 * STEP, rtol=1e-9)
+    assert len(across) == 20
+
+
+def test_neighbours_on_the_stripe_of_a_field_are_two_rows_apart():
+    # Frames counted from far on: a stored part in the middle of a recording.
+    along = spacing_along(_fields(range(1000, 1004)), "x")
+    np.testing.assert_allclose(along, 2 * PITCH, rtol=1e-9)
+    assert len(along) == 4 * 9
+
+
+def test_an_empty_part_has_no_spacing():
+    empty = _profile([])
+    assert len(spacing_along(empty, "x")) == 0
+    assert len(spacing_across(empty, _trajectory(2), "x")) == 0
 
 
 def test_statistics_of_a_frame_are_those_of_its_points():

@@ -70,7 +70,7 @@ class ScanGrid:
         profile = _number_profiles(cloud.frame)
         profile += cloud.laser * (profile.max(initial=0) + 2 * _MARGIN)
         line = cloud.scan_line.astype(np.int64)
-        return cls(cloud, profile, line // _line_step(profile, line), max_jump)
+        return cls(cloud, profile, line // line_step(profile, line), max_jump)
 
     @cached_property
     def _width(self) -> int:
@@ -191,11 +191,15 @@ def _number_profiles(frame: np.ndarray) -> Indices:
     return numbers.astype(np.int64)[which]
 
 
-def _line_step(profile: Indices, line: Indices) -> int:
+def line_step(profile: Indices, line: Indices) -> int:
     """Tell how many image rows lie between two scan lines: 2 in the fields of interlaced video.
 
     Rows then are even in one field and odd in the other; halved, both have the same numbers, and
     neighbours across are half a scan line apart, which no triangle minds.
+
+    Args:
+        profile: Number of each point's profile, from 0.
+        line: Image row or column of each point [px].
     """
     total = np.bincount(profile)
     odd = np.bincount(profile, weights=line % 2)

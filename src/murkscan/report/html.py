@@ -90,8 +90,8 @@ def _charts(summary: ScanSummary) -> list[Block]:
 
 def _spreads(summary: ScanSummary) -> Table:
     rows = [
-        ("spacing along the stripe [mm]", *_figures(summary.across, 1e3)),
-        ("spacing along the motion [mm]", *_figures(summary.along, 1e3)),
+        ("spacing along the stripe [mm]", *_figures(summary.along, 1e3)),
+        ("spacing along the motion [mm]", *_figures(summary.across, 1e3)),
         ("depth z [mm]", *_figures(summary.depth, 1e3)),
         ("standard deviation along the ray [mm]", *_figures(summary.sigma, 1e3)),
         ("signal [grey levels]", *_figures(summary.signal, 1.0)),

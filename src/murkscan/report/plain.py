@@ -7,14 +7,37 @@ import numpy as np
 
 from .spread import Spread
 from .summary import ScanSummary
+from .timeline import Timeline
 from .words import rig_rows
 
 
 def as_json(summary: ScanSummary) -> dict[str, Any]:
     """Give the content of report.json: plain values, units in the keys, None for what is not."""
-    recorded, model, timeline = summary.recorded, summary.model, summary.timeline
+    model = summary.model
     return {
         "format": 1,
+        **_counts(summary),
+        "mesh": {"vertices": model.vertices, "faces": model.faces},
+        "size_mm": None if model.size is None else [_round(1e3 * edge) for edge in model.size],
+        "signal_grey_levels": _as_plain(summary.signal, 1.0),
+        "depth_mm": _as_plain(summary.depth, 1e3),
+        "sigma_mm": _as_plain(summary.sigma, 1e3),
+        "spacing_along_stripe_mm": _as_plain(summary.along, 1e3),
+        "spacing_along_motion_mm": _as_plain(summary.across, 1e3),
+        "rig": dict(rig_rows(summary.rig)),
+        "laser": summary.laser,
+        "settings": dict(summary.settings),
+        "versions": dict(summary.versions),
+        "durations_s": {name: _round(time) for name, time in summary.durations.items()},
+        "pictures": [{"path": p.path, "caption": p.caption} for p in summary.pictures],
+        "timeline": _as_columns(summary.timeline, is_timed=summary.recorded.is_timed),
+    }
+
+
+def _counts(summary: ScanSummary) -> dict[str, Any]:
+    """Give what was recorded, and how many frames and points came of it."""
+    recorded = summary.recorded
+    return {
         "recording": {
             "name": recorded.name,
             "size_px": list(recorded.size),
@@ -29,30 +52,20 @@ def as_json(summary: ScanSummary) -> dict[str, Any]:
         },
         "points": {
             "on_profiles": summary.num_points,
-            "outliers": model.outliers,
-            "in_cloud": model.points,
+            "outliers": summary.model.outliers,
+            "in_cloud": summary.model.points,
         },
-        "mesh": {"vertices": model.vertices, "faces": model.faces},
-        "size_mm": None if model.size is None else [_round(1e3 * edge) for edge in model.size],
-        "signal_grey_levels": _as_plain(summary.signal, 1.0),
-        "depth_mm": _as_plain(summary.depth, 1e3),
-        "sigma_mm": _as_plain(summary.sigma, 1e3),
-        "spacing_along_stripe_mm": _as_plain(summary.across, 1e3),
-        "spacing_along_motion_mm": _as_plain(summary.along, 1e3),
-        "rig": dict(rig_rows(summary.rig)),
-        "laser": summary.laser,
-        "settings": dict(summary.settings),
-        "versions": dict(summary.versions),
-        "durations_s": {name: _round(time) for name, time in summary.durations.items()},
-        "pictures": [{"path": p.path, "caption": p.caption} for p in summary.pictures],
-        "timeline": {
-            "time_s" if recorded.is_timed else "picture": _as_list(timeline.time),
-            "frames": timeline.frames.tolist(),
-            "frames_without_stripe": timeline.empty.tolist(),
-            "points_per_frame": _as_list(timeline.points),
-            **_as_lists("signal_grey_levels", timeline.signal, 1.0),
-            **_as_lists("depth_mm", timeline.depth, 1e3),
-        },
+    }
+
+
+def _as_columns(timeline: Timeline, *, is_timed: bool) -> dict[str, Any]:
+    return {
+        "time_s" if is_timed else "picture": _as_list(timeline.time),
+        "frames": timeline.frames.tolist(),
+        "frames_without_stripe": timeline.empty.tolist(),
+        "points_per_frame": _as_list(timeline.points),
+        **_as_lists("signal_grey_levels", timeline.signal, 1.0),
+        **_as_lists("depth_mm", timeline.depth, 1e3),
     }
 
 

@@ -1,7 +1,8 @@
-"""How far apart neighbouring points lie, along the stripe and along the motion."""
+"""How far apart neighbouring points lie: along a profile, and across to the next."""
 
 import numpy as np
 
+from ..geometry.grid import line_step
 from ..types.arrays import Indices, Scalars
 from ..types.laser import Axis
 from ..types.profile import Profile
@@ -12,8 +13,10 @@ _LARGEST_GAP = 2
 field only."""
 
 
-def spacing_across(profile: Profile, axis: Axis) -> Scalars:
+def spacing_along(profile: Profile, axis: Axis) -> Scalars:
     """Give the distances of points on neighbouring scan lines of one frame [m].
+
+    In the fields of interlaced video neighbouring scan lines may be two image rows apart.
 
     Args:
         profile: Points of whole frames; where a scan line has several, the strongest counts.
@@ -21,11 +24,12 @@ def spacing_across(profile: Profile, axis: Axis) -> Scalars:
     """
     points, frame, line = _one_per_line(profile, axis)
     order = np.lexsort((line, frame))
-    is_next = (np.diff(frame[order]) == 0) & (np.diff(line[order]) == 1)
+    step = line_step(np.unique(frame, return_inverse=True)[1], line)
+    is_next = (np.diff(frame[order]) == 0) & (np.diff(line[order]) == step)
     return _steps(points[order], is_next)
 
 
-def spacing_along(profile: Profile, trajectory: Trajectory, axis: Axis) -> Scalars:
+def spacing_across(profile: Profile, trajectory: Trajectory, axis: Axis) -> Scalars:
     """Give the distances of points on the same scan line of successive frames [m].
 
     Args:

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..types.cloud import PointCloud
 from ..types.frame_times import FrameTimes
+from ..types.laser import Axis
 from ..types.mesh import Mesh
 from ..types.profile import Profile
 from ..types.rig import Rig
@@ -83,10 +84,10 @@ class ScanSummary:
     """z of the points in the camera frame [m]."""
     sigma: Spread
     """Standard deviation of the points along their rays [m]."""
-    across: Spread
-    """Distance of neighbouring points on a stripe [m]."""
     along: Spread
-    """Distance of the same scan line's points on successive stripes [m]."""
+    """Distance of neighbouring points on a stripe: along a profile [m]."""
+    across: Spread
+    """Distance of the same scan line's points on successive stripes: along the motion [m]."""
     model: Model
 
     @property
@@ -133,19 +134,7 @@ def summarise(
         durations: Time that each stage took [s].
         pictures: What to show, the best first.
     """
-    axis = rig.lasers[laser].axis
-    parts: list[FrameStatistics] = []
-    names = ("signal", "depth", "sigma", "across", "along")
-    kept: dict[str, list[np.ndarray]] = {name: [] for name in names}
-    for profile in profiles:
-        parts.append(frame_statistics(profile))
-        kept["signal"].append(_thin(profile.signal))
-        kept["depth"].append(_thin(profile.points[:, 2]))
-        kept["sigma"].append(_thin(profile.sigma))
-        kept["across"].append(_thin(spacing_across(profile, axis)))
-        if trajectory is not None:
-            kept["along"].append(_thin(spacing_along(profile, trajectory, axis)))
-    spreads = {name: Spread.from_values(_join(values)) for name, values in kept.items()}
+    parts, spreads = _gather(profiles, rig.lasers[laser].axis, trajectory)
     return ScanSummary(
         recorded=recorded,
         rig=rig,
@@ -159,6 +148,24 @@ def summarise(
         model=_measure(cloud, num_outliers, mesh),
         **spreads,
     )
+
+
+def _gather(
+    profiles: Iterable[Profile], axis: Axis, trajectory: Trajectory | None
+) -> tuple[list[FrameStatistics], dict[str, Spread]]:
+    """Look at each part once: give the statistics of its frames, and the spreads over all parts."""
+    parts: list[FrameStatistics] = []
+    names = ("signal", "depth", "sigma", "along", "across")
+    kept: dict[str, list[np.ndarray]] = {name: [] for name in names}
+    for profile in profiles:
+        parts.append(frame_statistics(profile))
+        kept["signal"].append(_thin(profile.signal))
+        kept["depth"].append(_thin(profile.points[:, 2]))
+        kept["sigma"].append(_thin(profile.sigma))
+        kept["along"].append(_thin(spacing_along(profile, axis)))
+        if trajectory is not None:
+            kept["across"].append(_thin(spacing_across(profile, trajectory, axis)))
+    return parts, {name: Spread.from_values(_join(values)) for name, values in kept.items()}
 
 
 def _measure(cloud: PointCloud | None, num_outliers: int, mesh: Mesh | None) -> Model:
