@@ -16,18 +16,24 @@ def tilted(random, count, most):
     return random.uniform(-most, most, (count, 2))
 
 
-def test_the_stated_deviations_are_true():
+def test_the_stated_deviations_and_correlations_are_true():
     """Of 12 calibrations x 9 parameters, errors over sigma spread as they should."""
-    pulls = []
+    pulls, pulls_of_difference = [], []
     for seed in range(12):
         random = np.random.default_rng(seed)
         found = calibrate_camera(views(random, tilted(random, 16, 30)), BOARD, CAMERA.size)
         assert found.rms == pytest.approx(0.1 * np.sqrt(2), rel=0.1)
-        pulls.append((parameters(found.camera) - parameters(CAMERA)) / found.sigma)
+        error = parameters(found.camera) - parameters(CAMERA)
+        pulls.append(error / found.sigma)
+        (fx_fx, fx_fy), (_, fy_fy) = found.covariance[:2, :2]
+        pulls_of_difference.append((error[0] - error[1]) / np.sqrt(fx_fx - 2 * fx_fy + fy_fy))
     # Jackknife sigmas of 16 views scatter by a fifth, and the larger of two is stated, so about
     # 1 or a little less; 12 x 9 correlated pulls leave some 0.2 of scatter to the RMS.
     assert 0.5 < np.sqrt(np.mean(np.square(pulls))) < 1.3
     assert np.abs(pulls).max() < 4.5
+    # fx and fy err together, so their difference is known ten times better than either; 12 pulls
+    # leave the RMS a scatter of a fifth, and with the correlations gone it would be 0.1.
+    assert 0.4 < np.sqrt(np.mean(np.square(pulls_of_difference))) < 1.6
 
 
 @pytest.mark.parametrize(

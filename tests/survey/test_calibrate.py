@@ -5,7 +5,7 @@ import cv2
 import numpy as np
 import pytest
 
-from murkscan.calibrate import Chessboard, Margin
+from murkscan.calibrate import PARAMETERS, Chessboard, Margin
 from murkscan.calibrate.sheet import locate_on_board
 from murkscan.errors import Degenerate, FormatError, InputError, MissingResult, NotEnoughData
 from murkscan.io.images import write_image
@@ -65,8 +65,70 @@ def test_the_camera_is_written_and_every_photo_drawn(photos, tmp_path):
     assert record["views"] == len(TILTS)
     assert "7 views are few" in record["verdict"]
     drawn = sorted(file.name for file in (tmp_path / "calibrate" / "camera").iterdir())
-    assert drawn == [f"photo{number}.jpg" for number in range(len(TILTS))]
+    assert drawn == [f"photo{number}.png.found.jpg" for number in range(len(TILTS))]
     assert result.num_photos == len(TILTS)
+
+
+def test_the_record_says_in_what_and_how_well_the_parameters_are_known(photos, tmp_path):
+    rig = tmp_path / "rig.toml"
+    result = calibrate_camera_from_photos(photos, BOARD, rig)
+    record = tomllib.loads(rig.read_text("utf-8"))["calibration"]["camera"]
+    assert record["water"] == "air"
+    assert record["parameters"] == list(PARAMETERS)
+    # Written with nine digits.
+    np.testing.assert_allclose(record["covariance"], result.calibration.covariance, rtol=1e-8)
+    rig.write_text("format = 1\n[water]\nindex = 1.34\n", "utf-8")
+    calibrate_camera_from_photos(photos, BOARD, rig)
+    tables = tomllib.loads(rig.read_text("utf-8"))
+    assert tables["calibration"]["camera"]["water"] == tables["water"] == {"index": 1.34}
+
+
+def test_a_camera_behind_a_port_is_refused_and_its_file_left_alone(photos, tmp_path):
+    rig = tmp_path / "rig.toml"
+    calibrate_camera_from_photos(photos, BOARD, rig)
+    port = "[camera.port]\nkind = 'dome'\nradius_mm = 50\nthickness_mm = 5\nglass_index = 1.5\n"
+    rig.write_text(rig.read_text("utf-8") + port, "utf-8")
+    before = rig.read_bytes()
+    for calibrate in (calibrate_camera_from_photos, calibrate_laser_from_photos):
+        with pytest.raises(
+            InputError, match=r"has a port.* take \[camera\.port\] and \[water\] out"
+        ):
+            calibrate(photos, BOARD, rig)
+    assert rig.read_bytes() == before
+
+
+@pytest.mark.parametrize("inside", ["", "mine"])
+def test_photos_where_the_drawings_go_are_refused_and_stay(photos, tmp_path, inside):
+    rig = tmp_path / "rig.toml"
+    calibrate_camera_from_photos(photos, BOARD, rig)
+    for job, name in [
+        (calibrate_camera_from_photos, "camera"),
+        (calibrate_laser_from_photos, "laser_0"),
+    ]:
+        mine = tmp_path / "calibrate" / name / inside
+        mine.mkdir(parents=True, exist_ok=True)
+        write_image(mine / "mine.jpg", render(TILTS[0]))
+        with pytest.raises(InputError, match="where the drawings of this calibration go; move"):
+            job(tmp_path / "calibrate" / ".." / "calibrate" / name / inside, BOARD, rig)
+        assert (mine / "mine.jpg").exists()
+
+
+def test_only_drawings_of_an_earlier_calibration_are_cleared(photos, own_photos, tmp_path):
+    rig, drawings = tmp_path / "rig.toml", tmp_path / "calibrate" / "camera"
+    write_image(drawings / "mine.jpg", render(TILTS[0]))
+    (own_photos / "photo6.png").rename(own_photos / "other.png")
+    calibrate_camera_from_photos(own_photos, BOARD, rig)
+    calibrate_camera_from_photos(photos, BOARD, rig)
+    drawn = {file.name for file in drawings.iterdir()}
+    assert drawn == {"mine.jpg", *(f"photo{number}.png.found.jpg" for number in range(7))}
+
+
+def test_photos_of_one_name_and_two_formats_have_a_drawing_each(own_photos, tmp_path):
+    write_image(own_photos / "photo0.jpg", render(TILTS[0]))
+    result = calibrate_camera_from_photos(own_photos, BOARD, tmp_path / "rig.toml")
+    drawn = {file.name for file in result.pictures.iterdir()}
+    assert {"photo0.png.found.jpg", "photo0.jpg.found.jpg"} < drawn
+    assert len(drawn) == len(TILTS) + 1
 
 
 def test_progress_is_told_for_every_photo(photos, tmp_path):
@@ -179,6 +241,7 @@ def test_the_green_laser_calibrates_to_the_known_sheet(data, tmp_path):
     assert np.degrees(np.arcsin(turn)) <= 0.5
     points = np.concatenate(found.points)[np.concatenate(found.inliers)]
     assert np.abs(points @ normal + distance).max() <= 2e-3
+    assert tomllib.loads(rig.read_text("utf-8"))["calibration"]["laser"]["0"]["water"] == "air"
     saved = load_rig(rig).lasers[0]
     np.testing.assert_allclose(saved.sheet.normal, found.sheet.normal, atol=1e-9)
     assert (laser.num_photos, len(laser.without_board)) == (61, 16)

@@ -16,7 +16,7 @@ from .sheet import StripeOnBoard as StripeOnBoard
 from .sheet import calibrate_laser as calibrate_laser
 from .stripe_on_board import keep_on_board as keep_on_board
 from .stripe_on_board import mask_to_sheet as mask_to_sheet
-from .verdict import Verdict as Verdict
+from .verdict import CalibrationVerdict as CalibrationVerdict
 from .verdict import distances_of as distances_of
 from .verdict import judge_camera as judge_camera
 from .verdict import judge_laser as judge_laser

@@ -16,7 +16,7 @@ from .tilt import refuse_parallel_boards
 from .view import BoardView, as_opencv
 
 PARAMETERS = ("fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3")
-"""Names of a camera's parameters, in the order of `CameraCalibration.sigma`."""
+"""Names of a camera's parameters, in the order of `CameraCalibration.covariance`."""
 MIN_VIEWS = 4
 """Views below which no camera is calibrated."""
 _MAX_FOCAL_SIGMA = 0.05
@@ -45,10 +45,16 @@ class CameraCalibration:
     """Where the board was in each view."""
     residuals: tuple[Pixels, ...]
     """Corner as found minus corner as projected, of each view [px]."""
-    sigma: Float[np.ndarray, "9"]
-    """Standard deviation of each of `PARAMETERS`: OpenCV's or the jackknife's, the larger."""
+    covariance: Float[np.ndarray, "9 9"]
+    """Of `PARAMETERS`: how they vary together is the jackknife's; how much each does is OpenCV's
+    or the jackknife's, the larger. From fewer than 10 views it is singular."""
     left_out: tuple[BoardView, ...]
     """Views left out, since they fit far worse than the others."""
+
+    @property
+    def sigma(self) -> Scalars:
+        """Standard deviation of each of `PARAMETERS`."""
+        return np.sqrt(np.diag(self.covariance))
 
     @property
     def rms(self) -> float:
@@ -88,7 +94,8 @@ def calibrate_camera(
     _check_views(used, len(views), board)
     refuse_parallel_boards(used, board, size)
     fit, left_out = _fit_without_outliers(used, board, size)
-    sigma = np.maximum(fit.sigma, _jackknife_sigma(fit.views, board, size))
+    covariance = _widen(_jackknife_covariance(fit.views, board, size), fit.sigma)
+    sigma = np.sqrt(np.diag(covariance))
     if sigma[0] > _MAX_FOCAL_SIGMA * fit.camera.focal_length[0]:
         raise Degenerate(
             f"The {len(fit.views)} views do not determine the focal length: with RMS "
@@ -97,7 +104,7 @@ def calibrate_camera(
             "the top and the bottom, in different parts of the picture."
         )
     return CameraCalibration(
-        fit.camera, fit.views, fit.camera_from_boards, fit.residuals, sigma, left_out
+        fit.camera, fit.views, fit.camera_from_boards, fit.residuals, covariance, left_out
     )
 
 
@@ -161,13 +168,13 @@ def _fit(views: Sequence[BoardView], board: Chessboard, size: tuple[int, int]) -
         for view, turn, shift in zip(views, turns, shifts, strict=True)
     )
     formal = np.ravel(sigma)[: len(PARAMETERS)].astype(np.float64)
-    return CameraCalibration(camera, tuple(views), poses, residuals, formal, ())
+    return CameraCalibration(camera, tuple(views), poses, residuals, np.diag(formal**2), ())
 
 
-def _jackknife_sigma(
+def _jackknife_covariance(
     views: Sequence[BoardView], board: Chessboard, size: tuple[int, int]
-) -> Scalars:
-    """Give the standard deviation of each parameter from how it changes without some views.
+) -> Float[np.ndarray, "9 9"]:
+    """Give the covariance of the parameters from how they change without some views.
 
     OpenCV's own takes the corners of a view as independent, which those of a board that is not
     quite flat are not.
@@ -181,7 +188,17 @@ def _jackknife_sigma(
         lens = np.ravel(distortion)[:5]
         estimates.append([matrix[0, 0], matrix[1, 1], matrix[0, 2], matrix[1, 2], *lens])
     around = np.array(estimates) - np.mean(estimates, axis=0)
-    return np.sqrt((num_folds - 1) / num_folds * np.sum(around**2, axis=0))
+    return (num_folds - 1) / num_folds * around.T @ around
+
+
+def _widen(covariance: Float[np.ndarray, "n n"], least: Scalars) -> Float[np.ndarray, "n n"]:
+    """Raise standard deviations to at least these; the correlations stay."""
+    sigma = np.sqrt(np.diag(covariance))
+    wider = np.maximum(sigma, least)
+    scale = np.divide(wider, sigma, out=np.zeros_like(sigma), where=sigma > 0)
+    widened = covariance * np.outer(scale, scale)
+    np.fill_diagonal(widened, wider**2)
+    return widened
 
 
 def _project(camera: Camera, turn: np.ndarray, shift: np.ndarray, points: Points) -> Pixels:

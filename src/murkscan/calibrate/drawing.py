@@ -49,7 +49,7 @@ def draw_board(
     return _write(canvas, note)
 
 
-def draw_stripe(
+def draw_stripe_on_board(
     photo: ColourImage,
     pixels: Pixels,
     residuals: Scalars,

@@ -26,7 +26,7 @@ _INLIERS = 0.9
 
 
 @dataclass(frozen=True)
-class Verdict:
+class CalibrationVerdict:
     """A judgement."""
 
     advice: tuple[str, ...]
@@ -44,7 +44,7 @@ class Verdict:
         return self.praise if self.is_good else "Usable, but: " + " ".join(self.advice)
 
 
-def judge_camera(calibration: CameraCalibration) -> Verdict:
+def judge_camera(calibration: CameraCalibration) -> CalibrationVerdict:
     """Judge a camera's calibration."""
     advice = []
     count = len(calibration.views)
@@ -70,14 +70,14 @@ def judge_camera(calibration: CameraCalibration) -> Verdict:
     if calibration.left_out:
         names = ", ".join(view.name for view in calibration.left_out)
         advice.append(f"{names} fitted far worse than the others and was left out; look at it.")
-    return Verdict(
+    return CalibrationVerdict(
         tuple(advice),
         f"Good: the focal length is known to {focal_sigma:.2%}, and corners cover "
         f"{coverage.share:.0%} of the picture.",
     )
 
 
-def judge_laser(calibration: LaserCalibration) -> Verdict:
+def judge_laser(calibration: LaserCalibration) -> CalibrationVerdict:
     """Judge a laser's calibration."""
     advice = []
     count = len(calibration.stripes)
@@ -100,7 +100,7 @@ def judge_laser(calibration: LaserCalibration) -> Verdict:
             f"Only {share:.0%} of the stripe points agree with one sheet; look for photos in which "
             "something else than the laser's line was taken for it."
         )
-    return Verdict(
+    return CalibrationVerdict(
         tuple(advice),
         f"Good from {nearest * 1e3:.0f} to {farthest * 1e3:.0f} mm, where the boards were: the "
         f"sheet's direction is known to {np.degrees(calibration.angle_sigma):.2f} degrees.",

@@ -24,7 +24,16 @@ def load_rig(path: Path) -> Rig:
         FormatError: The file is missing or no TOML, a key is unknown, missing or out of range; the
             message names the file and the key.
     """
-    return parse_rig(_read(path).unwrap(), name=str(path))
+    return parse_rig(read_tables(path), name=str(path))
+
+
+def read_tables(path: Path) -> dict[str, Any]:
+    """Read the tables of a rig file that may not be complete yet.
+
+    Raises:
+        FormatError: The file is missing or no TOML.
+    """
+    return _read(path).unwrap()
 
 
 def parse_rig(tables: dict[str, Any], *, name: str) -> Rig:
@@ -65,7 +74,7 @@ def save_camera(path: Path, camera: Camera, *, wavelength: float, record: dict[s
     document = _read(path) if path.exists() else tomlkit.parse("format = 1\n")
     document.setdefault("wavelength_nm", round(wavelength * 1e9, 3))
     document.setdefault("camera", tomlkit.table()).update(camera_table(camera))
-    document.setdefault("calibration", tomlkit.table(True))["camera"] = record
+    document.setdefault("calibration", tomlkit.table(True))["camera"] = _lay_out(record)
     _write(path, document)
 
 
@@ -99,8 +108,18 @@ def save_laser(path: Path, laser: Laser, number: int, *, record: dict[str, Any])
     of_lasers = document.setdefault("calibration", tomlkit.table(True)).setdefault(
         "laser", tomlkit.table(True)
     )
-    of_lasers[str(number)] = record
+    of_lasers[str(number)] = _lay_out(record)
     _write(path, document)
+
+
+def _lay_out(record: dict[str, Any]) -> dict[str, Any]:
+    """Put each row of a matrix on a line of its own."""
+    laid_out = dict(record)
+    for key, value in record.items():
+        if isinstance(value, list) and value and isinstance(value[0], list):
+            laid_out[key] = tomlkit.array().multiline(True)
+            laid_out[key].extend(value)
+    return laid_out
 
 
 def _read(path: Path) -> tomlkit.TOMLDocument:

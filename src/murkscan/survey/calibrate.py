@@ -1,32 +1,25 @@
 """Calibrate a camera and its lasers from photos: find, fit, judge, save, draw."""
 
-import datetime
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from ..calibrate.board import Chessboard, Margin
 from ..calibrate.camera import CameraCalibration, calibrate_camera
-from ..calibrate.corners import find_board, suggest_board
 from ..calibrate.sheet import LaserCalibration, calibrate_laser
-from ..calibrate.verdict import Verdict, judge_camera, judge_laser, name_sigma
-from ..calibrate.view import BoardView
-from ..errors import EstimationError, InputError, MissingResult, NotEnoughData
+from ..calibrate.verdict import CalibrationVerdict, judge_camera, judge_laser
+from ..errors import EstimationError, InputError, MissingResult
 from ..extract import AbstractExtractor, GrayGravity
-from ..io.rig_toml import load_rig, save_camera, save_laser
-from ..types.arrays import Image
+from ..io.rig_toml import parse_rig, read_tables, save_camera, save_laser
 from ..types.rig import Rig
 from .board_photos import BoardPhotos
 from .board_stripes import StripeFinder
+from .board_views import find_boards
 from .calibrate_drawing import draw_boards, draw_stripes
+from .calibration_record import record_camera, record_laser, record_setting
 from .progress import Progress, silent
-
-_SUGGEST_FROM = 4
-"""Photos in which another board is looked for when the one asked for is nowhere."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +28,7 @@ class CameraResult:
 
     calibration: CameraCalibration
     """The camera and what it is worth."""
-    verdict: Verdict
+    verdict: CalibrationVerdict
     """The same in plain words."""
     num_photos: int
     """Photos that could be read."""
@@ -53,7 +46,7 @@ class LaserResult:
 
     calibration: LaserCalibration
     """The laser and what it is worth."""
-    verdict: Verdict
+    verdict: CalibrationVerdict
     """The same in plain words."""
     num_photos: int
     """Photos that could be read."""
@@ -85,30 +78,26 @@ def calibrate_camera_from_photos(
         progress: Told of each photo.
 
     Raises:
-        InputError: There are no photos, or they differ in size.
+        InputError: The rig's camera has a port, there are no photos, they differ in size, or they
+            lie where the drawings go.
         FormatError: None of the photos can be read, or the rig file is none.
         NotEnoughData: The board was found in fewer than four photos.
         Degenerate: The photos do not determine the camera.
     """
-    photos = BoardPhotos.open(path)
-    views, size = _find_boards(photos, board, progress)
-    folder = rig_path.parent / "calibrate" / "camera"
+    tables = _read_without_port(rig_path)
+    photos, folder = _open_photos(path, rig_path, "camera")
+    views, size = find_boards(photos, board, progress)
+    draw = partial(draw_boards, photos, views, folder, board=board, progress=progress)
     try:
         calibration = calibrate_camera(views, board, size)
     except EstimationError as error:
-        draw_boards(photos, views, board, None, folder, progress)
+        draw(calibration=None)
         raise type(error)(f"{error} The photos with their corners lie in {folder}.") from error
     verdict = judge_camera(calibration)
-    without = tuple(view.name for view in views if not view.is_found)
-    record = _record(board, len(views), str(verdict)) | {
-        "views": len(calibration.views),
-        "left_out": [view.name for view in calibration.left_out],
-        "rms_px": round(calibration.rms, 4),
-        "view_rms_px": [round(rms, 4) for rms in calibration.view_rms],
-        "sigma": {name: float(f"{s:.4g}") for name, s in name_sigma(calibration).items()},
-    }
+    record = record_setting(board, len(views), tables) | record_camera(calibration, verdict)
     save_camera(rig_path, calibration.camera, wavelength=wavelength, record=record)
-    draw_boards(photos, views, board, calibration, folder, progress)
+    draw(calibration=calibration)
+    without = tuple(view.name for view in views if not view.is_found)
     return CameraResult(calibration, verdict, len(views), without, photos.skipped, folder)
 
 
@@ -135,36 +124,32 @@ def calibrate_laser_from_photos(
 
     Raises:
         MissingResult: The camera has not been calibrated.
-        InputError: The number of the laser leaves a gap, there are no photos, or they are not of
-            the rig's size.
+        InputError: The rig's camera has a port, the number of the laser leaves a gap, there are no
+            photos, they are not of the rig's size, or they lie where the drawings go.
         FormatError: None of the photos can be read, or the rig file is none.
         NotEnoughData: Fewer than two photos show the board and the stripe.
         Degenerate: The boards stood nearly in one place.
     """
-    rig = _load_calibrated(rig_path, laser)
-    photos = BoardPhotos.open(path)
-    views, _ = _find_boards(photos, board, progress, rig.camera.size)
+    tables = _read_without_port(rig_path)
+    rig = _parse_calibrated(tables, rig_path, laser)
+    photos, folder = _open_photos(path, rig_path, f"laser_{laser}")
+    views, _ = find_boards(photos, board, progress, size=rig.camera.size)
     margin = margin or Margin(board.square, board.square, board.square, board.square)
     finder = StripeFinder(photos, views, board, margin, rig, extractor or GrayGravity())
     stripes = finder.find(progress)
-    folder = rig_path.parent / "calibrate" / f"laser_{laser}"
-    drawn = (photos, board, margin, rig.camera, folder, progress)
+    draw = partial(
+        draw_stripes, photos, stripes, folder,
+        board=board, margin=margin, camera=rig.camera, progress=progress,
+    )  # fmt: skip
     try:
         calibration = calibrate_laser(stripes, rig.camera)
     except EstimationError as error:
-        draw_stripes(stripes, None, *drawn)
+        draw(calibration=None)
         raise type(error)(f"{error} The photos with their stripes lie in {folder}.") from error
     verdict = judge_laser(calibration)
-    record = _record(board, len(views), str(verdict)) | {
-        "views": len(calibration.stripes),
-        "points": calibration.num_points,
-        "inliers": calibration.num_inliers,
-        "rms_mm": round(calibration.rms * 1e3, 4),
-        "view_rms_mm": [round(rms * 1e3, 4) for rms in calibration.view_rms],
-        "angle_sigma_deg": float(f"{np.degrees(calibration.angle_sigma):.4g}"),
-    }
+    record = record_setting(board, len(views), tables) | record_laser(calibration, verdict)
     save_laser(rig_path, calibration.laser, laser, record=record)
-    draw_stripes(stripes, calibration, *drawn)
+    draw(calibration=calibration)
     return LaserResult(
         calibration=calibration,
         verdict=verdict,
@@ -176,78 +161,41 @@ def calibrate_laser_from_photos(
     )
 
 
-def _find_boards(
-    photos: BoardPhotos,
-    board: Chessboard,
-    progress: Progress,
-    size: tuple[int, int] | None = None,
-) -> tuple[list[BoardView], tuple[int, int]]:
-    """Look for the board in every photo; give the views, and the size of the photos."""
-    views, seen, first = [], list[Image](), None
-    for photo in photos:
-        first = first or photo
-        if size is not None and photo.size != size:
-            raise InputError(
-                f"{photos.path / photo.name} is {photo.size[0]} x {photo.size[1]} px but the rig's "
-                f"camera has {size[0]} x {size[1]}; give photos of this camera, never resized."
-            )
-        grey = photo.as_grey()
-        views.append(find_board(grey, board, name=photo.name))
-        if len(seen) < _SUGGEST_FROM:
-            seen.append(grey)
-        progress("find boards", len(views), photos.num_photos)
-    assert first is not None
-    if not any(view.is_found for view in views):
-        raise NotEnoughData(_never_found(photos, board, len(views), seen))
-    return views, first.size
-
-
-def _never_found(photos: BoardPhotos, board: Chessboard, num_photos: int, seen: list[Image]) -> str:
-    other = suggest_board(seen, board)
-    if other is not None:
-        return (
-            f"None of the {num_photos} photos in {photos.path} shows a {board} board, but a "
-            f"{other} board is there: use --board {other}; INNER corners count, not squares."
+def _open_photos(path: Path, rig_path: Path, name: str) -> tuple[BoardPhotos, Path]:
+    """Open the photos; give them, and the folder that the drawings of this calibration go to."""
+    folder = rig_path.parent / "calibrate" / name
+    if path.resolve().is_relative_to(folder.resolve()):
+        raise InputError(
+            f"The photos {path} lie in {folder}, where the drawings of this calibration go; move "
+            "them to another folder."
         )
-    return (
-        f"None of the {num_photos} photos in {photos.path} shows a whole {board} board. Count its "
-        "INNER corners, where black squares touch; show all of it, closer, sharp and evenly lit."
-    )
+    return BoardPhotos.open(path), folder
 
 
-def _load_calibrated(rig_path: Path, laser: int) -> Rig:
-    """Load a rig that has a camera, and room for the laser."""
-    if not rig_path.exists() or _has_no_camera(rig_path):
+def _read_without_port(rig_path: Path) -> dict[str, Any]:
+    """Read the tables of a rig file, none where it is missing; refuse a camera behind a port."""
+    tables = read_tables(rig_path) if rig_path.exists() else {}
+    camera = tables.get("camera")
+    if isinstance(camera, dict) and "port" in camera:
+        raise InputError(
+            f"The camera of {rig_path} has a port, and a camera and its lasers can be calibrated "
+            "in air without one only; take [camera.port] and [water] out, photograph in air, and "
+            "put them back."
+        )
+    return tables
+
+
+def _parse_calibrated(tables: dict[str, Any], rig_path: Path, laser: int) -> Rig:
+    """Make a rig that has a camera, and room for the laser."""
+    if "camera" not in tables:
         raise MissingResult(
             f"{rig_path} has no camera yet; run `murkscan calibrate camera` first with the same "
             "--rig."
         )
-    rig = load_rig(rig_path)
-    if rig.camera.port is not None:
-        raise InputError(
-            f"The camera of {rig_path} has a port, and a laser can be calibrated in air without "
-            "one only; take [camera.port] out, photograph in air, and put it back."
-        )
+    rig = parse_rig(tables, name=str(rig_path))
     if not 0 <= laser <= len(rig.lasers):
         raise InputError(
             f"{rig_path} has {len(rig.lasers)} laser(s), numbered from 0, so --laser may be "
             f"0 to {len(rig.lasers)}, not {laser}."
         )
     return rig
-
-
-def _has_no_camera(rig_path: Path) -> bool:
-    try:
-        return "camera" not in tomllib.loads(rig_path.read_text("utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, IsADirectoryError):
-        return False  # Not a rig file at all: `load_rig` says so better.
-
-
-def _record(board: Chessboard, num_photos: int, verdict: str) -> dict[str, Any]:
-    return {
-        "date": datetime.date.today(),
-        "board": str(board),
-        "square_mm": round(board.square * 1e3, 6),
-        "photos": num_photos,
-        "verdict": verdict,
-    }

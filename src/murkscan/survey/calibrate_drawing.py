@@ -7,7 +7,7 @@ import numpy as np
 
 from ..calibrate.board import Chessboard, Margin
 from ..calibrate.camera import CameraCalibration
-from ..calibrate.drawing import draw_board, draw_stripe, project_outline
+from ..calibrate.drawing import draw_board, draw_stripe_on_board, project_outline
 from ..calibrate.sheet import LaserCalibration, StripeOnBoard
 from ..calibrate.view import BoardView
 from ..io.images import write_image
@@ -15,6 +15,8 @@ from ..types.camera import Camera
 from .board_photos import BoardPhotos
 from .progress import Progress
 
+_SUFFIX = ".found.jpg"
+"""Ends the names of our drawings, so that nothing else is ever taken for one."""
 _SHEET_TOLERANCE = 2e-3
 """Distance from the sheet at which a stripe point is drawn red [m], where the RMS is lower."""
 
@@ -22,9 +24,10 @@ _SHEET_TOLERANCE = 2e-3
 def draw_boards(
     photos: BoardPhotos,
     views: Sequence[BoardView],
+    folder: Path,
+    *,
     board: Chessboard,
     calibration: CameraCalibration | None,
-    folder: Path,
     progress: Progress,
 ) -> None:
     """Draw the corners of every photo, with residuals where there is a calibration."""
@@ -42,18 +45,19 @@ def draw_boards(
             residuals = calibration.residuals[used[view.name]]
             note += f", RMS {calibration.view_rms[used[view.name]]:.2f} px"
         picture = draw_board(photo.image, view, board, residuals, note)
-        write_image(folder / f"{Path(view.name).stem}.jpg", picture)
+        write_image(folder / f"{view.name}{_SUFFIX}", picture)
         progress("draw", number + 1, len(views))
 
 
 def draw_stripes(
-    stripes: Sequence[StripeOnBoard],
-    calibration: LaserCalibration | None,
     photos: BoardPhotos,
+    stripes: Sequence[StripeOnBoard],
+    folder: Path,
+    *,
     board: Chessboard,
     margin: Margin,
     camera: Camera,
-    folder: Path,
+    calibration: LaserCalibration | None,
     progress: Progress,
 ) -> None:
     """Draw the stripe points of every photo with a board, coloured by residual."""
@@ -74,7 +78,7 @@ def draw_stripes(
         if calibration is not None and stripe.name in used:
             residuals = calibration.residuals[used[stripe.name]]
             note += f", RMS {calibration.view_rms[used[stripe.name]] * 1e3:.2f} mm"
-        picture = draw_stripe(
+        picture = draw_stripe_on_board(
             photo.image,
             stripe.pixels,
             residuals,
@@ -82,7 +86,7 @@ def draw_stripes(
             outline=project_outline(board, margin, camera, stripe.camera_from_board),
             tolerance=_SHEET_TOLERANCE,
         )
-        write_image(folder / f"{Path(stripe.name).stem}.jpg", picture)
+        write_image(folder / f"{stripe.name}{_SUFFIX}", picture)
         done += 1
         progress("draw", done, len(stripes))
 
@@ -93,5 +97,5 @@ def _number(items: Sequence[BoardView | StripeOnBoard]) -> dict[str, int]:
 
 def _clear(folder: Path) -> None:
     """Remove what an earlier calibration drew: it would be taken for this one's."""
-    for file in folder.glob("*.jpg"):
+    for file in folder.glob(f"*{_SUFFIX}"):
         file.unlink()
