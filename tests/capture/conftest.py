@@ -46,6 +46,27 @@ def write_video() -> Callable[..., Path]:
 
 
 @pytest.fixture(scope="session")
+def write_clocked() -> Callable[[Path, Sequence[np.ndarray], Sequence[int]], Path]:
+    """Encode grey pictures with any times [ms], even such as no encoder would accept."""
+
+    def write(path: Path, pictures: Sequence[np.ndarray], times: Sequence[int]) -> Path:
+        with av.open(str(path), "w") as container:
+            stream = container.add_stream("ffv1", rate=25)
+            stream.height, stream.width = pictures[0].shape
+            stream.pix_fmt = "gray"
+            # No picture leans on another, and each has a checksum.
+            stream.codec_context.options = {"g": "1", "level": "3", "slicecrc": "1"}
+            for number, (picture, time) in enumerate(zip(pictures, times, strict=True)):
+                (packet,) = stream.encode(av.VideoFrame.from_ndarray(picture, "gray"))
+                # Decoding times must grow and come first; Matroska does not keep them.
+                packet.pts, packet.dts, packet.time_base = time, number, Fraction(1, 1000)
+                container.mux(packet)
+        return path
+
+    return write
+
+
+@pytest.fixture(scope="session")
 def write_folder() -> Callable[[Path, Sequence[np.ndarray]], Path]:
     """Write pictures as PNG files of a folder."""
 

@@ -38,9 +38,9 @@ def test_times_come_from_times_csv(tmp_path):
     recording = open_recording(tmp_path)
     assert recording.is_timed
     assert [frame.time for frame in recording.frames()] == [5, 5.5, 7.5]
-    # The second field comes half way to the next picture; after the last, half the last step on.
+    # The second field comes half the usual 1.25 s later, or half way to a picture that is early.
     fields = open_recording(tmp_path, fields="bottom-first")
-    assert [frame.time for frame in fields.frames()] == [5, 5.25, 5.5, 6.5, 7.5, 8.5]
+    assert [frame.time for frame in fields.frames()] == [5, 5.25, 5.5, 6.125, 7.5, 8.125]
 
 
 def test_times_csv_and_a_rate_contradict(tmp_path):

@@ -143,20 +143,24 @@ COMMAND = "from murkscan.cli import main; main()"
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals are sent as on POSIX systems")
-def test_ctrl_c_ends_the_command_with_a_file_that_plays(tmp_path, sending):
+@pytest.mark.parametrize("length", [[], ["--seconds", "600"]], ids=["open", "timed"])
+def test_ctrl_c_ends_the_command_with_a_file_that_plays(tmp_path, sending, length):
     out = tmp_path / "dive.mkv"
     sending("udp://127.0.0.1:45122?pkt_size=1316", "mpegts")
     process = subprocess.Popen(
-        [sys.executable, "-c", COMMAND, "capture", "udp://127.0.0.1:45122", str(out)],
+        [sys.executable, "-c", COMMAND, "capture", "udp://127.0.0.1:45122", str(out), *length],
         stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
         text=True,
     )
     part, deadline = tmp_path / "dive.part.mkv", time.monotonic() + 20
     while time.monotonic() < deadline and not (part.exists() and part.stat().st_size > 8000):
         time.sleep(0.05)
     process.send_signal(signal.SIGINT)
-    said, _ = process.communicate(timeout=20)
+    said, complained = process.communicate(timeout=20)
     assert process.returncode == 0
+    assert len(said.splitlines()) == 1
+    assert "murkscan:" not in complained
     frames = list(open_recording(out).frames())
     assert len(frames) > 10
     assert f"{len(frames)} frames" in said

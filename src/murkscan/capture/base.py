@@ -14,14 +14,14 @@ from .fields import FieldOrder
 
 @dataclass(frozen=True)
 class Skip:
-    """Something of a recording that could not be read."""
+    """Frames in a row that a recording should have and does not give."""
 
     index: int
-    """Number of the frame that is missing, or of the first of those that are."""
+    """Index of the first of them that was asked for."""
     reason: str
     """What is wrong, naming the file."""
-    count: int = 1
-    """How many frames are missing, as far as that is known."""
+    count: int
+    """How many they are, from `index` on: a picture of two fields counts as two."""
 
 
 def ignore_skip(skip: Skip) -> None:
@@ -51,11 +51,12 @@ class AbstractRecording(abc.ABC):
     def frames(
         self, start: int = 0, *, on_skip: Callable[[Skip], None] = ignore_skip
     ) -> Iterator[Frame]:
-        """Read the frames in order, from the one with index `start`.
+        """Read the frames in order, from the one with index `start`; their times strictly increase.
 
         Args:
             start: Index of the first frame wanted.
-            on_skip: Told of each frame, or tail, that cannot be read; its index stays unused.
+            on_skip: Told of frames that cannot be read or have no time of their own, each once
+                and before the frame that follows them; their indices stay unused.
 
         Raises:
             FormatError: A picture has another size than the first one.
@@ -73,7 +74,7 @@ class AbstractRecording(abc.ABC):
 
     @abc.abstractmethod
     def fingerprint(self) -> str:
-        """Give a text that changes when the recording's files change."""
+        """Give a text that changes when the recording's frames or their times would."""
 
 
 def spread_evenly(total: int, count: int) -> list[int]:
@@ -81,9 +82,14 @@ def spread_evenly(total: int, count: int) -> list[int]:
     return sorted({round(float(x)) for x in np.linspace(0, total - 1, max(count, 1))})
 
 
-def fingerprint_files(files: Sequence[Path]) -> str:
-    """Give a text that changes when a name, a size or a date of the files does."""
-    digest = hashlib.sha256()
+def fingerprint_files(files: Sequence[Path], reading: object) -> str:
+    """Give a text that changes when a name, a size or a date of the files does.
+
+    Args:
+        files: The files that hold the pictures.
+        reading: Whatever else the frames and their times depend on; its `repr` counts.
+    """
+    digest = hashlib.sha256(f"{reading!r}\n".encode())
     for file in files:
         state = file.stat()
         digest.update(f"{file.name}\0{state.st_size}\0{state.st_mtime_ns}\n".encode())

@@ -25,6 +25,14 @@ class Clock:
         """Time between two pictures of the recording [s]; 1 where it has no times."""
         return 1 / self.rate if self.rate else self.spacing or 1.0
 
+    def cut_period(self, apart: float) -> float:
+        """Give the time that a picture's fields share [s], the next one being `apart` [s] away.
+
+        A field is exposed half a period after the other whenever the next picture comes; only
+        where that is early, by jitter, must the field come earlier too.
+        """
+        return min(apart, self.period)
+
     @property
     def is_real(self) -> bool:
         """Whether times are seconds, not numbers of pictures."""

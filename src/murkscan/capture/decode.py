@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
-from typing import Any
+from typing import Any, Literal
 
 import av
 import numpy as np
@@ -29,14 +29,19 @@ class Picture:
 
 @dataclass(frozen=True)
 class Loss:
-    """Pictures that could not be decoded."""
+    """Pictures in a row that give no frames."""
 
     first: int
     """Number of the first of them in the recording."""
     count: int
     """How many they are."""
-    is_cut: bool = False
-    """Whether they are missing at the end, where the file promises them."""
+    why: Literal["broken", "cut", "untimed"] = "broken"
+    """They cannot be decoded, are promised behind the file's end, or have no time of their own."""
+
+    @property
+    def end(self) -> int:
+        """Number of the first picture after them."""
+        return self.first + self.count
 
 
 def open_video(path: Path) -> Any:
@@ -89,7 +94,7 @@ def decode_pictures(container: Any) -> Iterator[Picture | Loss]:
     if lost:
         yield Loss(number, lost)
     if promised > 0:
-        yield Loss(number + lost, promised, is_cut=True)
+        yield Loss(number + lost, promised, "cut")
 
 
 class _Fed:

@@ -12,7 +12,7 @@ from ..types.frame import Frame
 
 FieldOrder = Literal["progressive", "top-first", "bottom-first"]
 """What a picture is made of; the top field has the even rows 0, 2, 4 …"""
-Verdict = Literal["progressive", "top-first", "bottom-first", "undecided"]
+FieldVerdict = Literal["progressive", "top-first", "bottom-first", "undecided"]
 """What pictures tell of their fields; undecided where nothing moves."""
 
 _SCALES = (4, 8, 16)
@@ -41,7 +41,8 @@ def split_fields(
         image: The picture as it was recorded.
         picture: Its number in the recording.
         time: When it, or its first field, was exposed [s].
-        period: Time from one picture to the next [s]; the second field comes half of it later.
+        period: Time from one picture to the next [s]; the second field comes half of it later,
+            and before the next picture if this is no longer than the time to that.
         order: What the picture is made of.
     """
     if order == "progressive":
@@ -59,7 +60,7 @@ def split_fields(
     ]
 
 
-def find_field_order(runs: Iterable[Sequence[Image]]) -> Verdict:
+def find_field_order(runs: Iterable[Sequence[Image]]) -> FieldVerdict:
     """Tell from the picture whether it is interlaced, and which field came first.
 
     What moves differs the more, the longer the time between two looks at it. Of two pictures in
@@ -124,7 +125,7 @@ def _sums(values: Field) -> tuple[float, float]:
     return float(flat.sum()), float(flat @ flat)
 
 
-def _judge(motions: np.ndarray, leans: np.ndarray) -> Verdict:
+def _judge(motions: np.ndarray, leans: np.ndarray) -> FieldVerdict:
     """Decide at the scale where motion stands out most; runs × (sum, sum of squares) × scales."""
     motion, lean = motions.sum(axis=0), leans.sum(axis=0)
     clear = motion[0] / np.sqrt(motion[1] + 1e-9)

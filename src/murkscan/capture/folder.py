@@ -1,7 +1,7 @@
 """A recording kept as a folder of pictures."""
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -62,7 +62,9 @@ class ImageFolder(AbstractRecording):
     files: tuple[str, ...]
     """Names of the pictures."""
     times: tuple[float, ...]
-    """Time of each picture [s], or its number where it has none."""
+    """Time of each picture [s], increasing, or its number where it has none."""
+    spacing: float
+    """Usual time between two pictures [s]; 1 where they have no times."""
     wavelength: float
     """Wavelength of the laser, for which colours are weighted [m]."""
 
@@ -96,9 +98,9 @@ class ImageFolder(AbstractRecording):
         return frames
 
     def fingerprint(self) -> str:
-        """Give a text that changes when a name, a size or a date of the files does."""
-        names = [*self.files, *([TIMES] if (self.path / TIMES).exists() else [])]
-        return fingerprint_files([self.path / name for name in names])
+        """Give a text that changes when the recording's frames or their times would."""
+        reading = (self.order, self.is_timed, self.times, self.wavelength)
+        return fingerprint_files([self.path / name for name in self.files], reading)
 
     def _split(self, image: Image, picture: int) -> list[Frame]:
         height, width = image.shape
@@ -116,11 +118,10 @@ class ImageFolder(AbstractRecording):
         )
 
     def _period(self, picture: int) -> float:
-        """Give the time to the next picture; for the last one, the time since the one before."""
-        if len(self.times) < 2:
-            return 1.0
-        before = min(picture, len(self.times) - 2)
-        return self.times[before + 1] - self.times[before]
+        """Give the time that a picture's fields share [s]: the usual one, or up to the next."""
+        if picture + 1 == len(self.times):
+            return self.spacing
+        return min(self.times[picture + 1] - self.times[picture], self.spacing)
 
 
 def read_grey(path: Path, wavelength: float) -> Image:
@@ -134,18 +135,3 @@ def read_grey(path: Path, wavelength: float) -> Image:
     except OSError as error:
         raise FormatError(f"{path} cannot be read: {error.strerror or error}.") from error
     return image if image.ndim == 2 else grey_from_colour(image, wavelength)
-
-
-def read_runs(path: Path, files: Sequence[str], wavelength: float) -> Iterator[list[Image]]:
-    """Read some runs of pictures that follow one another, spread over the folder."""
-    length = 5
-    for start in spread_evenly(max(len(files) - length + 1, 1), 5):
-        run: list[Image] = []
-        for name in files[start : start + length]:
-            try:
-                image = read_grey(path / name, wavelength)
-            except FormatError:
-                continue
-            if not run or image.shape == run[0].shape:
-                run.append(image)
-        yield run

@@ -15,7 +15,7 @@ TICKS = 1000
 
 
 @dataclass(frozen=True)
-class Recorded:
+class RecordingProgress:
     """What a running recording has written so far."""
 
     frames: int

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import av
 import numpy as np
@@ -103,6 +103,7 @@ def _open_folder(path: Path, wavelength: float, fps: float | None, fields: Field
         num_frames=len(files) * each,
         files=files,
         times=times,
+        spacing=usual_spacing([times]) or 1 / (fps or 1.0),
         wavelength=wavelength,
     )
 
@@ -205,11 +206,12 @@ def _look_at(path: Path) -> _Facts:
         if first is None:
             raise FormatError(f"No picture in {path} can be decoded; record it anew.")
         stream, decoded = container.streams.video[0], first.decoded
-        time = picture_time(decoded)
+        start = _find_start(stream, first)
         duration = (container.duration or 0) / av.time_base
         if stream.duration:
             duration = float(stream.duration * stream.time_base)
-        start = 0.0 if math.isnan(time) else time
+        elif container.format.name.startswith("matroska") and duration > start:
+            duration -= start  # FFmpeg writes there when the recording ends, not how long it is.
         counts = stream.frames > 0 or duration == 0
         slack = _SLACK if len(container.streams) > 1 else 0.0
         return _Facts(
@@ -220,3 +222,11 @@ def _look_at(path: Path) -> _Facts:
             duration=duration,
             promised_end=-math.inf if counts else start + duration - slack,
         )
+
+
+def _find_start(stream: Any, first: Picture) -> float:
+    """Give the time of the first picture [s], even if others had to be decoded before one came."""
+    time = picture_time(first.decoded)
+    if first.number > 0 and stream.start_time is not None:
+        return float(stream.start_time * stream.time_base)
+    return 0.0 if math.isnan(time) else time

@@ -9,7 +9,7 @@ import av
 import numpy as np
 
 from ..errors import DeviceError
-from .growing import TICKS, Recorded, growing_video
+from .growing import TICKS, RecordingProgress, growing_video
 
 _FORMATS = {
     (2, "uint8"): ("gray", "gray"),
@@ -21,7 +21,7 @@ _FORMATS = {
 
 def record_images(
     images: Iterable[tuple[np.ndarray, float]], out: Path, *, seconds: float | None = None
-) -> Generator[Recorded, None, None]:
+) -> Generator[RecordingProgress, None, None]:
     """Write pictures into a Matroska file, compressed without loss (FFV1).
 
     Closing the iterator, or an interrupt, ends the recording and leaves a file that plays.
@@ -54,7 +54,7 @@ def record_images(
             for packet in stream.encode(_picture(image, stream, last)):
                 size += packet.size
                 container.mux(packet)
-            yield Recorded(frames, last / TICKS, size)
+            yield RecordingProgress(frames, last / TICKS, size)
         if stream is not None:
             container.mux(stream.encode())
 

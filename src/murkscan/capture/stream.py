@@ -10,7 +10,7 @@ from typing import Any
 import av
 
 from ..errors import DeviceError, InputError
-from .growing import TICKS, Recorded, growing_video
+from .growing import TICKS, RecordingProgress, growing_video
 
 _OPTIONS = {
     "protocol_whitelist": "file,crypto,data,udp,rtp,rtsp,rtmp,srtp,srt,tcp,tls,http,https",
@@ -29,7 +29,7 @@ def is_stream(source: str) -> bool:
 
 def copy_stream(
     source: str, out: Path, *, seconds: float | None = None, timeout: float = 10.0
-) -> Generator[Recorded, None, None]:
+) -> Generator[RecordingProgress, None, None]:
     """Copy a stream's video packet by packet into a Matroska file, without decoding it.
 
     The copy begins at the first keyframe, which gets the time 0. Closing the iterator, or an
@@ -61,7 +61,7 @@ def copy_stream(
             packet.stream = target
             frames, size, last = frames + 1, size + packet.size, packet.pts
             container.mux(packet)
-            yield Recorded(frames, last / TICKS, size)
+            yield RecordingProgress(frames, last / TICKS, size)
 
 
 def _open(source: str, timeout: float) -> Any:

@@ -5,7 +5,7 @@ from contextlib import closing
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
-from typing import Any, final
+from typing import final
 
 from ..errors import FormatError
 from ..types.frame import Frame
@@ -14,9 +14,15 @@ from .clock import Clock
 from .decode import Loss, decode_pictures, grey_from_video, open_video, picture_time
 from .fields import FieldOrder, split_fields
 from .seek import pictures_at
+from .timed import TimedPicture, time_pictures
 
-_BROKEN = "cannot be decoded"
-_CUT = "can no longer be read: the file ends too early"
+_WHY = {
+    "broken": "cannot be decoded",
+    "cut": "can no longer be read: the file ends too early",
+    "untimed": "cannot be placed in time: by the file's clock not after the picture before; if "
+    "that clock is wrong, give the pictures a second (--fps)",
+}
+"""What is told of pictures that are lost."""
 
 
 @final
@@ -41,33 +47,29 @@ class Video(AbstractRecording):
 
         The video is decoded from its beginning, since only so the count is exact.
         """
-        each, end, time = self.fields_per_picture, 0, self.clock.start
+        each = self.fields_per_picture
         with closing(open_video(self.path)) as container:
-            for item in decode_pictures(container):
+            for item in time_pictures(decode_pictures(container), self.clock):
                 if isinstance(item, Loss):
-                    end = item.first + item.count
-                    self._tell(item.first, end, start, on_skip, _CUT if item.is_cut else _BROKEN)
-                    continue
-                end, time = item.number + 1, picture_time(item.decoded)
-                if end * each > start:
-                    yield from (
-                        f for f in self._read(item.decoded, item.number) if f.index >= start
-                    )
-        if missing := self.clock.count_missing(time):
-            self._tell(end, end + missing, start, on_skip, _CUT)
+                    self._tell(item, start, on_skip)
+                elif (item.number + 1) * each > start:
+                    yield from (frame for frame in self._split(item) if frame.index >= start)
 
     def sample(self, count: int) -> list[Frame]:
         """Read about `count` frames spread evenly over the recording; see the base.
 
         Frames are read at keyframes where there are enough of them, so that a long video is not
-        decoded whole. Their indices follow from their times, exact where the rate is constant.
+        decoded whole. Their indices follow from their times, and second fields come half the usual
+        period after the first ones, both exact where the rate is constant.
         """
         frames: list[Frame] = []
         if self.num_frames and self.clock.spacing:
             numbers = spread_evenly(self.num_frames // self.fields_per_picture, count)
             times = [self.clock.start + self.clock.spacing * number for number in numbers]
             for decoded in pictures_at(self.path, times):
-                fields = self._read(decoded, self.clock.number_of(picture_time(decoded)))
+                number = self.clock.number_of(picture_time(decoded))
+                time = self.clock.time_of(number, picture_time(decoded))
+                fields = self._split(TimedPicture(number, decoded, time, self.clock.period))
                 frames.append(fields[len(frames) % len(fields)])
         frames = frames or list(islice(self.frames(), count))
         if not frames:
@@ -75,29 +77,30 @@ class Video(AbstractRecording):
         return frames
 
     def fingerprint(self) -> str:
-        """Give a text that changes when the name, the size or the date of the file does."""
-        return fingerprint_files([self.path])
+        """Give a text that changes when the recording's frames or their times would."""
+        reading = (self.order, self.is_timed, self.clock, self.wavelength)
+        return fingerprint_files([self.path], reading)
 
-    def _read(self, decoded: Any, number: int) -> list[Frame]:
+    def _split(self, picture: TimedPicture) -> list[Frame]:
+        decoded, (width, height) = picture.decoded, self.size
         if (decoded.width, decoded.height) != self.size:
             raise FormatError(
-                f"Picture {number} of {self.path} is {decoded.width} x {decoded.height} px, but "
-                f"the recording is {self.size[0]} x {self.size[1]} px; cut the video there."
+                f"Picture {picture.number} of {self.path} is {decoded.width} x {decoded.height} "
+                f"px, but the recording is {width} x {height} px; cut the video there."
             )
         return split_fields(
             grey_from_video(decoded, self.wavelength),
-            picture=number,
-            time=self.clock.time_of(number, picture_time(decoded)),
-            period=self.clock.period,
+            picture=picture.number,
+            time=picture.time,
+            period=picture.period,
             order=self.order,
         )
 
-    def _tell(
-        self, first: int, end: int, start: int, on_skip: Callable[[Skip], None], what: str
-    ) -> None:
-        """Report lost pictures, as far as they would have come from `start` on."""
+    def _tell(self, loss: Loss, start: int, on_skip: Callable[[Skip], None]) -> None:
+        """Report lost pictures, as far as their frames would have come from `start` on."""
         each = self.fields_per_picture
-        if end * each > start:
-            span = f"Picture {first}" if end == first + 1 else f"Pictures {first} to {end - 1}"
-            index = max(first * each, start)
-            on_skip(Skip(index, f"{span} of {self.path} {what}.", end * each - index))
+        index, end = max(loss.first * each, start), loss.end * each
+        if index < end:
+            first, last = index // each, loss.end - 1
+            span = f"Picture {first}" if first == last else f"Pictures {first} to {last}"
+            on_skip(Skip(index, f"{span} of {self.path} {_WHY[loss.why]}.", end - index))

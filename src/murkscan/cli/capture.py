@@ -8,7 +8,7 @@ from cyclopts import Parameter
 from cyclopts.types import PositiveFloat
 
 if TYPE_CHECKING:
-    from ..capture import Recorded
+    from ..capture import RecordingProgress
 
 
 def capture(
@@ -31,31 +31,31 @@ def capture(
     out
         The file to write, ending in .mkv; nothing may stand there.
     seconds
-        Length of the recording [s]; without it, until Ctrl-C or the end of the stream.
+        Length of the recording [s], unless Ctrl-C or the end of the stream comes first.
     timeout
         Longest wait for the stream and for its next picture [s].
     """
     from contextlib import closing
 
-    from ..capture import Recorded
-
-    last = Recorded(0, 0.0, 0)
+    last: RecordingProgress | None = None
+    ending = ""
     try:
         with closing(_start(source, out, seconds, timeout)) as recording:
             for recorded in _show(recording):
                 last = recorded
     except KeyboardInterrupt:
-        # Without --seconds this is how a recording ends, and no interruption.
-        if seconds is not None:
-            raise
+        # Stopping by hand is how a recording ends, and no failure, even before --seconds are over.
+        ending = "; stopped by hand, and whole up to there"
+        if last is None:
+            print(f"{out}: nothing is recorded, since no picture had come when it was stopped")
     finally:
-        if last.frames:
-            print(f"{out}: {_describe(last)}")
+        if last is not None:
+            print(f"{out}: {_describe(last)}{ending}")
 
 
 def _start(
     source: str, out: Path, seconds: float | None, timeout: float
-) -> Generator["Recorded", None, None]:
+) -> Generator["RecordingProgress", None, None]:
     """Choose how to record a source."""
     from ..capture import camera_images, copy_stream, is_camera, is_stream, record_images
     from ..errors import InputError
@@ -70,7 +70,7 @@ def _start(
     )
 
 
-def _show(recording: Iterator["Recorded"]) -> Iterator["Recorded"]:
+def _show(recording: Iterator["RecordingProgress"]) -> Iterator["RecordingProgress"]:
     """Keep a line on the terminal that tells how far the recording is."""
     from rich.console import Console
 
@@ -80,6 +80,6 @@ def _show(recording: Iterator["Recorded"]) -> Iterator["Recorded"]:
             yield recorded
 
 
-def _describe(recorded: "Recorded") -> str:
+def _describe(recorded: "RecordingProgress") -> str:
     rate = recorded.bytes * 8e-6 / recorded.seconds if recorded.seconds else 0.0
     return f"{recorded.frames} frames, {recorded.seconds:.1f} s, {rate:.1f} Mbit/s"
