@@ -12,13 +12,16 @@ from typing import Any
 
 import numpy as np
 
-from .errors import InputError, MissingResult
+from .errors import FormatError, InputError, MissingResult
+from .io.images import write_image
 from .io.json_files import load_json, save_json
 from .io.mesh_files import load_mesh, save_mesh
 from .io.mlp import save_frames
 from .io.parquet import load_profile, load_stripe, save_profile, save_stripe
 from .io.ply import load_cloud, save_cloud
 from .io.poses import load_poses, save_poses
+from .io.text import save_text
+from .types.arrays import ColourImage
 from .types.cloud import PointCloud
 from .types.frame_times import FrameTimes
 from .types.mesh import Mesh
@@ -28,6 +31,10 @@ from .types.trajectory import Trajectory
 
 STAGES = ("extract", "triangulate", "motion", "cloud", "mesh", "view", "report")
 """The stages of a scan, in order."""
+
+
+_NOTED = ("frames", "times", "points", "skips")
+"""What the note of a part of extract lists."""
 
 
 @dataclass(frozen=True)
@@ -44,35 +51,60 @@ class Stage:
         return hashlib.sha256(json.dumps(self.key, sort_keys=True).encode()).hexdigest()[:16]
 
     def result(self) -> dict[str, Any] | None:
-        """Give what the stage said when it was finished with this very key, None before that."""
-        note = self._note()
-        return note.get("result") if note.get("key") == self.key else None
+        """Give what the stage said when it was finished with this very key.
+
+        None before that, and where a file that it made is missing or cut off since.
+        """
+        note = self.note()
+        if note.get("key") != self.key or "result" not in note:
+            return None
+        return note["result"] if note.get("files") == self._files() else None
 
     def counts(self) -> dict[str, Any]:
         """Give what the stage said when it was finished; nothing before that."""
-        return self.result() or {}
+        return self.note().get("result", {})
 
     def seconds(self) -> float:
         """Tell how long the run took that finished the stage [s]."""
-        return float(self._note().get("seconds", 0.0))
+        return float(self.note().get("seconds", 0.0))
 
     def begin(self) -> None:
-        """Make the folder ready: parts made with this very key stay, all else is removed."""
-        if self._note().get("key") != self.key:
-            shutil.rmtree(self.folder, ignore_errors=True)
-        save_json(self._file, {"key": self.key, "began": time.time()})
+        """Make the folder ready: parts made with this very key stay, all else is removed.
 
-    def finish(self, result: dict[str, Any]) -> None:
-        """Say that the stage is done, with its counts."""
-        seconds = round(time.time() - self._note()["began"], 3)
-        save_json(self._file, {"key": self.key, "seconds": seconds, "result": result})
+        Raises:
+            InputError: The folder holds something that no stage has made.
+        """
+        if self.folder.exists() and not self._file.exists() and any(self.folder.iterdir()):
+            raise InputError(f"{self.folder} holds other files; give a new folder for the scan.")
+        if self.note().get("key") != self.key:
+            shutil.rmtree(self.folder, ignore_errors=True)
+        save_json(self._file, {"key": self.key})
+
+    def finish(self, result: dict[str, Any], *, since: float) -> None:
+        """Say that the stage is done, with its counts; it began `since` [s, monotonic clock]."""
+        seconds = round(time.monotonic() - since, 3)
+        note = {"key": self.key, "seconds": seconds, "result": result, "files": self._files()}
+        save_json(self._file, note)
+
+    def _files(self) -> dict[str, int]:
+        """Give the size of every file that the stage has made."""
+        made = (file for file in self.folder.rglob("*") if file.is_file())
+        sizes = {file.relative_to(self.folder).as_posix(): file.stat().st_size for file in made}
+        return {name: size for name, size in sorted(sizes.items()) if name != self._file.name}
 
     @property
     def _file(self) -> Path:
         return self.folder / "stage.json"
 
-    def _note(self) -> dict[str, Any]:
-        return load_json(self._file) if self._file.exists() else {}
+    def note(self) -> dict[str, Any]:
+        """Read what the stage wrote of itself; one that is damaged counts as not done."""
+        try:
+            note = load_json(self._file) if self._file.exists() else {}
+        except FormatError:
+            return {}
+        key, result = note.get("key"), note.get("result", {})
+        sound = isinstance(key, dict) and isinstance(key.get("inputs", {}), dict)
+        return note if sound and isinstance(result, dict) else {}
 
 
 @dataclass(frozen=True)
@@ -96,7 +128,13 @@ class Project:
                 f"{self.root} holds no scan; run `murkscan scan` or `murkscan extract` into it "
                 "first."
             )
-        return load_json(self.root / "scan.json")
+        content = load_json(self.root / "scan.json")
+        if missing := {"recording", "rig", "versions"} - content.keys():
+            raise FormatError(
+                f"{self.root / 'scan.json'} has lost its key {sorted(missing)[0]}; run "
+                "`murkscan scan` again."
+            )
+        return content
 
     def check_writable(self) -> None:
         """Refuse a folder that holds something other than a scan, so that nothing is mixed.
@@ -106,11 +144,10 @@ class Project:
         """
         if self.root.is_file():
             raise InputError(f"{self.root} is a file; give a folder with --out.")
-        if (
-            self.root.is_dir()
-            and any(self.root.iterdir())
-            and not (self.root / "scan.json").exists()
-        ):
+        is_scan = (self.root / "scan.json").exists()
+        # A hidden file is what a run left that was killed while it wrote its first one.
+        others = [file for file in self.root.glob("*") if not file.name.startswith(".")]
+        if others and not is_scan:
             raise InputError(f"{self.root} holds other files; give a new folder with --out.")
 
     def stage(self, name: str, *, settings: dict[str, Any], inputs: dict[str, Any]) -> Stage:
@@ -122,20 +159,28 @@ class Project:
         """Give a stage as it was finished last.
 
         Raises:
-            MissingResult: It has not been run, or not to its end.
+            MissingResult: It has not been run, not to its end, or a stage before it has been run
+                anew since.
         """
-        file = self.root / name / "stage.json"
-        note = load_json(file) if file.exists() else {}
+        note = Stage(self.root / name, {}).note()
         if "result" not in note:
             raise MissingResult(
                 f"{self.root} has no finished {name} stage; run `murkscan {name}` or "
                 "`murkscan scan` first."
             )
-        return Stage(self.root / name, note["key"])
+        stage = Stage(self.root / name, note["key"])
+        for source, digest in stage.key.get("inputs", {}).items():
+            if source in STAGES and self.finished(source).digest != digest:
+                raise MissingResult(
+                    f"The {name} stage of {self.root} is older than its {source} stage; run "
+                    f"`murkscan {name}` or `murkscan scan` again."
+                )
+        return stage
 
     def has_stripe_part(self, part: int) -> bool:
-        """Tell whether a part is whole; its note is written last."""
-        return self._part("extract/frames", part, "json").exists()
+        """Tell whether a part is there; its note is written last."""
+        files = ("extract/stripes", "parquet"), ("extract/frames", "json")
+        return all(self._part(folder, part, suffix).exists() for folder, suffix in files)
 
     def save_stripe_part(self, part: int, stripe: Stripe, note: dict[str, Any]) -> None:
         """Write one part of extract, and a note on the frames that it covers."""
@@ -149,7 +194,10 @@ class Project:
     def load_stripe_notes(self) -> Iterator[tuple[int, dict[str, Any]]]:
         """Read the number and the note of each part, in order."""
         for file in sorted((self.root / "extract/frames").glob("*.json")):
-            yield int(file.stem), load_json(file)
+            note = load_json(file)
+            if not all(isinstance(note.get(name), list) for name in _NOTED):
+                raise FormatError(f"{file} is damaged; delete it and run `murkscan scan` again.")
+            yield int(file.stem), note
 
     def load_frame_times(self) -> FrameTimes:
         """Read which frames a finished extract has seen, with or without a stripe."""
@@ -158,6 +206,11 @@ class Project:
         frames = [index for note in notes for index in note["frames"]]
         times = [time for note in notes for time in note["times"]]
         return FrameTimes(np.array(frames, np.uint32), np.array(times, float))
+
+    def load_profile_part(self, part: int) -> Profile | None:
+        """Read one part of triangulate; None where it has not been made."""
+        file = self._part("triangulate/profiles", part, "parquet")
+        return load_profile(file) if file.exists() else None
 
     def save_profile_part(self, part: int, profile: Profile) -> None:
         """Write one part of triangulate."""
@@ -178,6 +231,18 @@ class Project:
         folder = self.finished("extract").folder / "stripes"
         files = sorted(folder.glob("*.parquet"))
         return Stripe.concatenate([load_stripe(file) for file in files])
+
+    def save_background(self, content: dict[str, Any]) -> None:
+        """Write extract/background.json: what the extractor has learnt."""
+        save_json(self.root / "extract/background.json", content)
+
+    def save_overlay(self, name: str, picture: ColourImage) -> None:
+        """Write one picture of what was found, extract/overlay/<name>.png."""
+        write_image(self.root / f"extract/overlay/{name}.png", picture)
+
+    def find_overlays(self) -> list[Path]:
+        """Give the pictures of what was found, in order of frames."""
+        return sorted((self.root / "extract/overlay").glob("*.png"))
 
     def save_trajectory(self, trajectory: Trajectory) -> None:
         """Write motion/trajectory.csv."""
@@ -207,6 +272,19 @@ class Project:
     def load_mesh(self) -> Mesh:
         """Read the mesh of a finished mesh stage."""
         return load_mesh(self.finished("mesh").folder / "mesh.ply")
+
+    def save_picture(self, name: str, picture: ColourImage) -> None:
+        """Write one picture of the surface, view/<name>.png."""
+        write_image(self.root / f"view/{name}.png", picture)
+
+    def save_view_page(self, page: str) -> None:
+        """Write view/index.html."""
+        save_text(self.root / "view/index.html", page)
+
+    def save_report(self, content: dict[str, Any], page: str) -> None:
+        """Write report/report.json and report/index.html."""
+        save_json(self.root / "report/report.json", content)
+        save_text(self.root / "report/index.html", page)
 
     def _part(self, folder: str, part: int, suffix: str) -> Path:
         return self.root / folder / f"{part:06d}.{suffix}"

@@ -69,6 +69,8 @@ def test_every_command_has_help(command, capsys):
         (("--step-mm", "1", "--set", "colour=3"), "is no setting of GrayGravity"),
         (("--step-mm", "1", "--extractor", "magic"), "magic"),
         (("--step-mm", "1", "--start-time", "noon", "--poses", "x"), "exactly one of"),
+        (("--step-mm", "1", "--start-time", "5"), "go with --poses"),
+        (("--step-mm", "1", "--set", "half_width=nan"), "half_width"),
     ],
 )
 def test_a_wrong_scan_is_one_sentence_and_status_2(short, tmp_path, capfd, more, says):
@@ -77,6 +79,15 @@ def test_a_wrong_scan_is_one_sentence_and_status_2(short, tmp_path, capfd, more,
     assert says in said
     assert "Traceback" not in said
     assert said.splitlines()[-1].startswith("murkscan: ")
+
+
+def test_a_rig_without_a_laser_says_what_to_run(short, tmp_path, capfd):
+    rig = (short / "rig.toml").read_text()
+    bare = tmp_path / "bare.toml"
+    bare.write_text(rig[: rig.index("[[laser]]")])
+    frames, out = str(short / "frames"), str(tmp_path / "out")
+    assert run(["scan", frames, "--rig", str(bare), "--step-mm", "1", "--out", out]) == 2
+    assert "murkscan calibrate laser" in capfd.readouterr().err
 
 
 def test_a_stage_without_the_one_before_names_it(short, tmp_path, capfd):

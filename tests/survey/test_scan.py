@@ -10,8 +10,11 @@ import numpy as np
 import pytest
 
 import murkscan as ms
+from murkscan.capture import Skip
 from murkscan.simulate import HULL_SPEED
+from murkscan.survey.cloud import build_cloud
 from murkscan.survey.demo import Errors, run_demo
+from murkscan.survey.extract import cut_chunks, extract_recording
 
 MOTION = ms.ConstantSpeed(HULL_SPEED, "y")
 MADE = [
@@ -111,8 +114,10 @@ def test_a_killed_scan_goes_on_and_gives_the_same(scanned, hull, tmp_path):
         assert child.poll() is None
         time.sleep(0.005)
     child.kill()
-    child.wait()
+    assert child.wait() != 0, "the scan was done before it could be killed"
+    written = (out / "extract/frames/000000.json").stat().st_mtime_ns
     subprocess.run(_command(hull, out), check=True, capture_output=True)
+    assert (out / "extract/frames/000000.json").stat().st_mtime_ns == written
     again = (out / "cloud/cloud.ply").read_bytes()
     assert again == (scanned.root / "cloud/cloud.ply").read_bytes()
 
@@ -180,8 +185,72 @@ def test_a_corrupt_picture_in_the_middle_is_skipped_and_counted(hull, tmp_path):
     project = ms.scan(recording, rig, MOTION, out=tmp_path / "out")
     counts = project.finished("extract").counts()
     assert (counts["frames"], counts["skipped"]) == (129, 1)
-    assert "000070.png" in counts["skips"][0][1]
+    assert "000070.png" in counts["skips"][0][2]
     assert 70 not in project.load_cloud().frame
+
+
+def test_a_lost_part_is_made_again(scanned, hull, tmp_path):
+    shutil.copytree(scanned.root, tmp_path / "out")
+    (tmp_path / "out/extract/stripes/000001.parquet").unlink()
+    recording, rig = _open(hull)
+    project = ms.scan(recording, rig, MOTION, out=tmp_path / "out")
+    again = (project.root / "extract/stripes/000001.parquet").read_bytes()
+    assert again == (scanned.root / "extract/stripes/000001.parquet").read_bytes()
+
+
+def test_a_stage_that_is_older_than_its_input_is_not_taken(scanned, hull, tmp_path):
+    shutil.copytree(scanned.root, tmp_path / "out")
+    recording, rig = _open(hull)
+    project = ms.Project(tmp_path / "out")
+    extract_recording(project, recording, rig, ms.Steger())
+    with pytest.raises(ms.MissingResult, match="triangulate stage .* older than its extract"):
+        build_cloud(project, rig)
+
+
+def test_another_rate_gives_other_times(hull, tmp_path):
+    """The same pictures, first without times, then with a rate: a quarter of a second each."""
+    (tmp_path / "frames").mkdir()
+    for i in range(40, 60):
+        shutil.copy(hull / "frames" / f"{i:06d}.png", tmp_path / "frames")
+    rig = ms.load_rig(hull / "rig.toml")
+    untimed = ms.open_recording(tmp_path / "frames", fps=None)
+    ms.scan(untimed, rig, ms.ConstantStep(0.01, "y"), out=tmp_path / "out")
+    timed = ms.open_recording(tmp_path / "frames", fps=4.0)
+    project = ms.scan(timed, rig, ms.ConstantSpeed(0.1, "y"), out=tmp_path / "out")
+    assert np.ptp(project.load_trajectory().times) == pytest.approx(19 / 4)
+    assert np.ptp(project.load_trajectory().positions[:, 1]) == pytest.approx(0.1 * 19 / 4)
+
+
+def test_a_motion_that_needs_times_is_refused_before_the_work(hull, tmp_path):
+    (tmp_path / "frames").mkdir()
+    shutil.copy(hull / "frames/000050.png", tmp_path / "frames")
+    rig = ms.load_rig(hull / "rig.toml")
+    with pytest.raises(ms.InputError, match="--fps"):
+        ms.scan(ms.open_recording(tmp_path / "frames"), rig, MOTION, out=tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("halo", [0, 3])
+def test_a_loss_across_parts_is_counted_once(halo):
+    """Frames 60 to 69 and 130 to 139 are lost; parts end at 64 and 128."""
+    lost = {*range(60, 70), *range(130, 140)}
+    skips = [Skip(60, "a", 10)]
+
+    def frames():
+        for index in range(150):
+            if index == 140:
+                skips.append(Skip(130, "b", 10))
+            if index not in lost:
+                yield ms.Frame(np.zeros((2, 2), np.uint8), index, float(index))
+
+    chunks = list(cut_chunks(frames(), skips, first=0, halo=halo))
+    assert [[(s.index, s.count) for s in chunk.skips] for chunk in chunks] == [
+        [(60, 4)],
+        [(64, 6)],
+        [(130, 10)],
+    ]
+    owned = [f.index for chunk in chunks for f in chunk.frames if chunk.owns(f.index)]
+    assert owned == [index for index in range(150) if index not in lost]
 
 
 def test_the_demo_is_within_a_tenth_of_a_millimetre_of_the_truth(tmp_path):

@@ -8,7 +8,7 @@ _SIDE = 5
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _side_means(scan: np.ndarray, low: int, high: int) -> tuple[float, float, int]:
+def side_means(scan: np.ndarray, low: int, high: int) -> tuple[float, float, int]:
     """Mean levels of the first and of the last pixels of a stretch, and how many each is of."""
     count = max(min(_SIDE, (high - low) // 3), 1)
     left, right = 0.0, 0.0
@@ -36,7 +36,7 @@ def weigh_peaks(
         line, peak = peaks[i]
         scan = image[:, line] if down else image[line]
         low, high = max(peak - half_width - _SIDE, 0), min(peak + half_width + _SIDE + 1, len(scan))
-        left, right, count = _side_means(scan, low, high)
+        left, right, count = side_means(scan, low, high)
         span = max(high - low - count, 1)
         slope = (right - left) / span
         base = left + slope * (peak - low - (count - 1) / 2)

@@ -3,6 +3,8 @@
 import numpy as np
 from numba import njit
 
+from .gray_gravity import side_means
+
 _MOVES = 4
 """Pixels that a peak may be moved along its scan line until the ridge lies within it."""
 
@@ -15,8 +17,8 @@ def find_ridges(
 
     `derivatives` holds the Gaussian derivatives x, y, xx, xy, yy as windows (5 h h).
 
-    Gives centre, its standard deviation, strength as a second derivative across the ridge, one peak
-    a row (n 3); NaN where there is no ridge, or it runs along the scan line.
+    Gives centre, its standard deviation, height above what lies beyond the window, one peak a row
+    (n 3); NaN where there is no ridge, or it runs along the scan line.
     """
     found = np.full((len(peaks), 3), np.nan)
     height, width = image.shape
@@ -57,7 +59,10 @@ def find_ridges(
                         total += (nx * derivatives[0, j, k] + ny * derivatives[1, j, k]) ** 2
                 found[i, 0] = position + offset
                 found[i, 1] = noise * np.sqrt(total) / abs(curve * across)
-                found[i, 2] = -curve
+                scan = image[:, line] if down else image[line]
+                low, high = max(position - size, 0), min(position + size + 1, len(scan))
+                left, right, _ = side_means(scan, low, high)
+                found[i, 2] = scan[position] - 0.5 * (left + right)
                 break
             position += int(np.rint(min(max(offset, -2.0), 2.0)))
             if not 0 <= position < (height if down else width):

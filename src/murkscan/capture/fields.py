@@ -26,6 +26,8 @@ _LEAN = 0.2
 for noise smears them into each other; progressive video of all kinds was seen to stay below 0.1.
 """
 
+_APART = 0.1
+"""Ratio of a to the smaller of b and c from which fields may be apart; 1 but for an encoder."""
 _AGREEMENT = 0.8
 """Share of the runs that move, from which they say the same."""
 
@@ -83,6 +85,7 @@ def find_field_order(runs: Iterable[Sequence[Image]]) -> FieldVerdict:
             places of a recording.
     """
     motion, lean = [np.zeros((2, len(_SCALES)))], [np.zeros((2, len(_SCALES)))]
+    sums = np.zeros((3, len(_SCALES)))
     for run in runs:
         motion.append(np.zeros_like(motion[0]))
         lean.append(np.zeros_like(lean[0]))
@@ -97,22 +100,45 @@ def find_field_order(runs: Iterable[Sequence[Image]]) -> FieldVerdict:
                 )
                 motion[-1][:, scale] += _sums(b + c - 2 * a)
                 lean[-1][:, scale] += _sums(c - b)
+                sums[:, scale] += float(a.sum()), float(b.sum()), float(c.sum())
             previous = current
-    return _judge(np.array(motion), np.array(lean))
+    return _judge(np.array(motion), np.array(lean), sums)
 
 
 def _shrink_fields(image: Image) -> list[tuple[Field, Field]]:
     """Give both fields, brought to common rows by interpolation, at each scale."""
     rows, columns = image.shape[0] // 2, image.shape[1]
     top, bottom = (image[p : 2 * rows : 2].astype(np.float32) for p in (0, 1))
-    # Row r of either becomes row 2r + 1/2 of the picture, both blurred alike.
-    pair = [0.75 * top[1:-1] + 0.25 * top[2:], 0.25 * bottom[:-2] + 0.75 * bottom[1:-1]]
+    # A quarter of a field's row down, and up: both at row 2r + 1/2 of the picture, blurred alike.
+    pair = [_shift(top, _QUARTER)[1:], _shift(bottom, _QUARTER[::-1])[:-1]]
     shrunk = []
     for scale in _SCALES:
         size = (max(columns // scale, 1), max(2 * rows // scale, 1))
         pair = [cv2.resize(field, size, interpolation=cv2.INTER_AREA) for field in pair]
         shrunk.append((pair[0], pair[1]))
     return shrunk
+
+
+def _shift(field: Field, weights: Float32[np.ndarray, "taps"]) -> Field:
+    """Interpolate between rows: sums of as many neighbours as there are weights."""
+    count = len(field) - len(weights) + 1
+    return sum(
+        (weight * field[k : k + count] for k, weight in enumerate(weights)),
+        np.zeros((count, field.shape[1]), np.float32),
+    )
+
+
+def _interpolation_weights(count: int, at: float) -> Float32[np.ndarray, "taps"]:
+    """Lagrange's weights of `count` rows around rows 0 and 1, for the place `at` between them."""
+    rows = np.arange(count) - (count // 2 - 1)
+    return np.array(
+        [np.prod([(at - other) / (row - other) for other in rows if other != row]) for row in rows],
+        np.float32,
+    )
+
+
+_QUARTER = _interpolation_weights(8, 0.25)
+"""Eight rows: with two, what a thin stripe leaves between the rows outweighs its slow motion."""
 
 
 def _differences(a: Field, b: Field) -> Field:
@@ -125,8 +151,14 @@ def _sums(values: Field) -> tuple[float, float]:
     return float(flat.sum()), float(flat @ flat)
 
 
-def _judge(motions: np.ndarray, leans: np.ndarray) -> FieldVerdict:
-    """Decide at the scale where motion stands out most; runs × (sum, sum of squares) × scales."""
+def _judge(motions: np.ndarray, leans: np.ndarray, sums: np.ndarray) -> FieldVerdict:
+    """Decide at the scale where motion stands out most.
+
+    Args:
+        motions: b + c - 2a of each run: its sum and its sum of squares, at each scale.
+        leans: c - b, likewise.
+        sums: a, b and c of all runs together, at each scale.
+    """
     motion, lean = motions.sum(axis=0), leans.sum(axis=0)
     clear = motion[0] / np.sqrt(motion[1] + 1e-9)
     best = int(clear.argmax())
@@ -134,7 +166,10 @@ def _judge(motions: np.ndarray, leans: np.ndarray) -> FieldVerdict:
         return "undecided"
     ratio = lean[0, best] / motion[0, best]
     certain = abs(lean[0, best]) / np.sqrt(lean[1, best] + 1e-9)
-    if abs(ratio) < _LEAN or not _agree(motions[:, :, best], leans[:, :, best], ratio):
+    agreed = _agree(motions[:, :, best], leans[:, :, best], ratio)
+    # Fields that were taken apart in time differ from each other no less than from the next one.
+    apart = sums[0, best] >= _APART * min(sums[1, best], sums[2, best])
+    if abs(ratio) < _LEAN or not agreed or not apart:
         return "progressive"
     if certain < _SIGNIFICANT:
         return "undecided"

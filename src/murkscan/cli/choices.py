@@ -15,6 +15,9 @@ ExtractorName = Literal["threshold-skeleton", "gray-gravity", "gaussian", "stege
 MethodName = Literal["ray-sheet", "equation-4"]
 MesherName = Literal["grid", "poisson"]
 
+_LARGEST = 1e5
+"""No setting of any Choice is meant to be as large as this."""
+
 _EXTRACTORS: dict[ExtractorName, str] = {
     "threshold-skeleton": "ThresholdSkeleton",
     "gray-gravity": "GrayGravity",
@@ -58,6 +61,9 @@ def _make(stage: str, choice: str, settings: tuple[str, ...]) -> Any:
 
 def _parse(setting: str, text: str, default: Any) -> int | float:
     try:
-        return int(text) if isinstance(default, int) else float(text)
+        number = int(text) if isinstance(default, int) else float(text)
     except ValueError as error:
         raise InputError(f"--set {setting}: {text!r} is not a number.") from error
+    if not abs(number) < _LARGEST:
+        raise InputError(f"--set {setting}: {text} is not a number below {_LARGEST:g}.")
+    return number

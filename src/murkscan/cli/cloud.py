@@ -5,6 +5,8 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from .progress import progress_bars
+
 
 def cloud(out: Path, *, frames: Annotated[bool, Parameter(negative=())] = False) -> None:
     """Merge the profiles of a scan into one cloud of points.
@@ -22,5 +24,6 @@ def cloud(out: Path, *, frames: Annotated[bool, Parameter(negative=())] = False)
     from .summary import print_result
 
     project = Project(out)
-    result = build_cloud(project, load_scan_rig(project), frames=frames)
+    with progress_bars() as progress:
+        result = build_cloud(project, load_scan_rig(project), frames=frames, progress=progress)
     print_result("cloud", result, out / "cloud")

@@ -1,5 +1,6 @@
 """The door: commands by name, and what a failure says."""
 
+import io
 import sys
 import traceback
 from importlib.metadata import version
@@ -40,13 +41,22 @@ def main() -> None:
     Exits with 0 when done, 2 when the user's input is at fault, 130 when interrupted, and 1 when
     murkscan itself is.
     """
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # names of files may be no text
     sys.exit(run(sys.argv[1:]))
 
 
 def run(arguments: list[str]) -> int:
     """Run one command and give its exit status."""
     try:
-        app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
+        app(
+            arguments,
+            exit_on_error=False,
+            print_error=False,
+            result_action="return_value",
+            suppress_keyboard_interrupt=False,
+        )
     except (MurkscanError, CycloptsError) as error:
         return _say(str(error), 2)
     except KeyboardInterrupt:

@@ -6,6 +6,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from .choices import MesherName, make_mesher
+from .progress import progress_bars
 
 
 def mesh(
@@ -29,5 +30,6 @@ def mesh(
     from ..survey.mesh import build_mesh
     from .summary import print_result
 
-    result = build_mesh(Project(out), make_mesher(mesher, settings))
+    with progress_bars() as progress:
+        result = build_mesh(Project(out), make_mesher(mesher, settings), progress=progress)
     print_result("mesh", result, out / "mesh")

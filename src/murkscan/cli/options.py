@@ -59,10 +59,12 @@ class MotionFlags:
         given = [flag for flag in (self.speed_mm_s, self.step_mm, self.poses) if flag is not None]
         if len(given) != 1:
             raise InputError(
-                f"Give exactly one of --speed-mm-s, --step-mm and --poses, not {len(given)}: "
-                "without knowing how the camera moved there is no model."
+                f"Give exactly one of --speed-mm-s, --step-mm and --poses; {len(given) or 'none'} "
+                f"{'were' if given else 'was'} given, and without knowing how the camera moved "
+                "there is no model."
             )
-        along = self.along or rig.lasers[laser].axis
+        along = self.along or rig.laser(laser).axis
+        self._check_effect()
         if self.speed_mm_s is not None:
             return ConstantSpeed(self.speed_mm_s / 1e3, along)
         if self.step_mm is not None:
@@ -70,7 +72,14 @@ class MotionFlags:
         assert self.poses is not None
         mount = rig.vehicle_from_camera or Pose.identity()
         start = _seconds(self.start_time)
-        return PoseLog(load_poses(self.poses), mount, start, self.time_offset_s)
+        log = load_poses(self.poses)
+        return PoseLog(log, mount, start, self.time_offset_s, name=str(self.poses))
+
+    def _check_effect(self) -> None:
+        if self.poses is None and (self.start_time != "0" or self.time_offset_s != 0):
+            raise InputError("--start-time and --time-offset-s go with --poses; leave them out.")
+        if self.poses is not None and self.along is not None:
+            raise InputError("--along goes with --speed-mm-s or --step-mm; leave it out.")
 
 
 def _seconds(text: str) -> float:

@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+from .progress import progress_bars
+
 
 def report(out: Path) -> None:
     """Write a page on how the scan went: settings, counts, signal, spacing, pictures.
@@ -15,5 +17,6 @@ def report(out: Path) -> None:
     from ..survey.report import write_report
     from .summary import print_result
 
-    write_report(Project(out))
+    with progress_bars() as progress:
+        write_report(Project(out), progress=progress)
     print_result("report", {}, out / "report" / "index.html")

@@ -21,9 +21,9 @@ def print_result(stage: str, result: dict[str, Any], where: Path) -> None:
     print_skips(result.get("skips", []))
 
 
-def print_skips(skips: list[tuple[int, str]]) -> None:
+def print_skips(skips: list[tuple[int, int, str]]) -> None:
     """Say what could not be read."""
-    for _, reason in skips[:_SKIPS_SHOWN]:
+    for _, _, reason in skips[:_SKIPS_SHOWN]:
         print(f"  skipped: {reason}")
     if len(skips) > _SKIPS_SHOWN:
         print(f"  and {len(skips) - _SKIPS_SHOWN} more; see the report")

@@ -38,9 +38,9 @@ class Candidates:
 
     def __post_init__(self) -> None:
         """Refuse settings with which no peak, or every pixel, would be found."""
-        if self.half_width < 1 or self.min_height < 1 or self.min_contrast < 0:
+        if not (1 <= self.half_width <= 1000 and self.min_height >= 1 and self.min_contrast >= 0):
             raise InputError(
-                f"A stripe needs half_width ≥ 1 px, min_height ≥ 1 grey level and "
+                f"A stripe needs half_width from 1 to 1000 px, min_height ≥ 1 grey level and "
                 f"min_contrast ≥ 0, got {self.half_width:g}, {self.min_height:g} and "
                 f"{self.min_contrast:g}."
             )

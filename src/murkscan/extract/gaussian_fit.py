@@ -47,7 +47,8 @@ class GaussianFit(AbstractExtractor):
         """Find the stripe in each frame; see `AbstractExtractor.extract`."""
 
         def measure(image: Image, peaks: np.ndarray, down: bool) -> np.ndarray:
-            # A sensor may saturate below the largest number of its file: 12 bit in 16, say.
+            # A sensor may saturate below the largest number of its file: 12 bit in 16, say. Where
+            # it did not, little is lost: the very top of a peak says least about its centre.
             full = float(image.max())
             half_width = math.ceil(self.half_width)
             return fit_peaks(image, peaks, down, half_width, background.noise, full)

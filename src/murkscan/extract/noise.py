@@ -34,10 +34,13 @@ def learn_noise(frames: Sequence[Frame]) -> Background:
         differences.
     """
     within = np.median([_noise_within(frame.image) for frame in frames])
+    # Fields come with odd and even rows in turn: only those of the same rows can be compared.
+    alike = [[f for f in frames if f.first_row == row] for row in {f.first_row for f in frames}]
     pairs = [
         _noise_between(first.image, second.image)
-        for first, second in pairwise(frames)
-        if first.image.shape == second.image.shape and first.first_row == second.first_row
+        for same in alike
+        for first, second in pairwise(same)
+        if first.image.shape == second.image.shape
     ]
     noise = min(within, np.median(pairs)) if pairs else within
     return Background(noise=max(float(noise), _QUANTISATION))

@@ -44,7 +44,7 @@ class ThresholdSkeleton(AbstractExtractor):
 
     def __post_init__(self) -> None:
         """Refuse levels that no picture has."""
-        if self.level < 0 or self.min_height < 1 or self.min_contrast < 0:
+        if not (self.level >= 0 and self.min_height >= 1 and self.min_contrast >= 0):
             raise InputError(
                 f"ThresholdSkeleton needs level ≥ 0, min_height ≥ 1 and min_contrast ≥ 0, got "
                 f"{self.level:g}, {self.min_height:g} and {self.min_contrast:g}."

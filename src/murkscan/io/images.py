@@ -18,7 +18,10 @@ def read_image(path: Path) -> np.ndarray:
     """
     # Through memory, since OpenCV cannot open every name on every system.
     data = np.fromfile(path, np.uint8)
-    image = cv2.imdecode(data, cv2.IMREAD_UNCHANGED) if data.size else None
+    try:
+        image = cv2.imdecode(data, cv2.IMREAD_UNCHANGED) if data.size else None
+    except (cv2.error, MemoryError):  # a header that claims more pixels than a camera has
+        image = None
     if image is None or image.dtype not in (np.uint8, np.uint16):
         raise FormatError(f"{path} is not a picture that can be read; replace or remove it.")
     if image.ndim == 3:

@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from ..errors import FormatError
+from ..errors import FormatError, InputError
 from .atomic import replacing
 
 
@@ -12,9 +12,16 @@ def save_json(path: Path, content: dict[str, Any]) -> None:
     """Write a dictionary of plain values.
 
     Raises:
+        InputError: A number is not finite.
         DeviceError: The disk is full or cannot be written.
     """
-    text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
+    try:
+        text = json.dumps(content, indent=2, allow_nan=False)
+    except ValueError as error:
+        raise InputError(
+            f"A number that belongs into {path} is not finite; check the rig, the motion and the "
+            "settings for absurd values."
+        ) from error
     with replacing(path) as aside:
         aside.write_text(text + "\n", "utf-8")
 

@@ -98,12 +98,13 @@ def _save(path: Path, columns: Mapping[str, np.ndarray]) -> None:
             compression_level=1,
             use_dictionary=[name for name in columns if name not in floats],
             use_byte_stream_split=floats,
+            write_page_checksum=True,
         )
 
 
 def _load(path: Path) -> "_Columns":
     try:
-        table = pq.read_table(path)
+        table = pq.read_table(path, page_checksum_verification=True)
     except (pa.ArrowInvalid, OSError) as error:
         raise FormatError(f"{path} cannot be read as a table; delete it and run again.") from error
     return _Columns(

@@ -24,12 +24,17 @@ def load_poses(path: Path) -> Trajectory:
     try:
         lines = path.read_text("utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
-        raise FormatError(f"{path} cannot be read as a pose log: {error}.") from error
-    rows = [(i + 1, line) for i, line in enumerate(lines) if line.strip() and line[0] != "#"]
+        reason = error.strerror if isinstance(error, OSError) else "it is not text in UTF-8"
+        raise FormatError(f"The pose log {path} cannot be read: {reason}.") from error
+    rows = [
+        (i + 1, line) for i, line in enumerate(lines) if line.strip() and line.strip()[0] != "#"
+    ]
     if not rows:
         raise FormatError(f"{path} holds no poses.")
     if "time_s" in rows[0][1]:
         table = _parse(path, rows[1:], _columns_of(path, rows[0][1]), ",")
+        if len(table) == 0:
+            raise FormatError(f"{path} holds no poses.")
     else:
         table = _parse(path, rows, [0, 1, 2, 3, 7, 4, 5, 6], None)
     return _as_trajectory(path, table)
@@ -65,15 +70,17 @@ def _parse(
     for row, (number, line) in zip(table, rows, strict=True):
         cells = line.split(separator)
         try:
+            if separator is None and len(cells) != len(columns):
+                raise ValueError
             row[:] = [float(cells[column]) for column in columns]
         except (ValueError, IndexError) as error:
             raise FormatError(
                 f"{path}, line {number} is not a pose: a CSV log starts with the line "
                 f"{','.join(_HEADER)}, a TUM log has eight numbers a line."
             ) from error
-        if not np.isfinite(row).all() or not row[4:].any():
+        if not np.isfinite(row).all() or not 0.5 <= np.linalg.norm(row[4:]) <= 2:
             raise FormatError(f"{path}, line {number} has a number that is not finite, or a "
-                              "quaternion of length 0; remove the line.")  # fmt: skip
+                "quaternion whose length is not 1; remove the line.")  # fmt: skip
     return table
 
 

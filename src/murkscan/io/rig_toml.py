@@ -124,7 +124,7 @@ def _lay_out(record: dict[str, Any]) -> dict[str, Any]:
 
 def _read(path: Path) -> tomlkit.TOMLDocument:
     try:
-        return tomlkit.parse(path.read_text("utf-8"))
+        return tomlkit.parse(path.read_text("utf-8-sig"))
     except FileNotFoundError as error:
         raise FormatError(f"There is no rig file {path}; give one with --rig.") from error
     except (tomlkit.exceptions.ParseError, UnicodeDecodeError, IsADirectoryError) as error:

@@ -12,4 +12,4 @@ def save_text(path: Path, text: str) -> None:
         DeviceError: The disk is full or cannot be written.
     """
     with replacing(path) as aside:
-        aside.write_text(text, "utf-8")
+        aside.write_text(text, "utf-8", errors="backslashreplace")

@@ -28,8 +28,8 @@ def read_times(path: Path, files: Sequence[str]) -> tuple[float, ...]:
     """
     try:
         rows = list(csv.reader(path.read_text("utf-8-sig").splitlines()))
-    except UnicodeDecodeError as error:
-        raise FormatError(f"{path} is not a text in UTF-8; save it as CSV in UTF-8.") from error
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise FormatError(f"{path} cannot be read; save it as CSV in UTF-8.") from error
     if not rows or [cell.strip() for cell in rows[0]] != _HEADER:
         raise FormatError(f"{path} line 1 must be the header {','.join(_HEADER)}.")
     lines: dict[str, tuple[int, float]] = {}

@@ -18,6 +18,10 @@ def explain(error: ValidationError) -> str:
         return f"the key {key} is unknown; remove it or mend its spelling."
     if first["type"] == "missing":
         return f"the key {key} is missing; add it."
+    if first["type"] == "list_type":
+        return f"{key} is a list of tables; write [[{key}]]."
+    if first["type"] == "union_tag_not_found":
+        return f"the key {key}.kind is missing; add it."
     if first["type"] == "union_tag_invalid":
         return f"{key}.kind must be one of {first['ctx']['expected_tags']}."
     return f"{key}: {first['msg'].lower()}, got {first['input']!r}."

@@ -9,6 +9,8 @@ from ..errors import InputError
 from ..types.arrays import Points, Scalars
 from ..types.trajectory import Trajectory
 
+_SLOWEST, _FASTEST = 1e-9, 1e3
+"""Sizes of a speed [m/s] or a step [m] that a scan can have."""
 Direction = Literal["x", "y", "z"]
 """A camera axis to move along."""
 
@@ -45,8 +47,8 @@ def follow_line(times: Scalars, distances: Scalars, along: Direction) -> Traject
 
 def check_pace(pace: float, flag: str) -> None:
     """Refuse a speed or a step that moves nothing."""
-    if pace == 0 or not np.isfinite(pace):
+    if not _SLOWEST <= abs(pace) <= _FASTEST:
         raise InputError(
-            f"{flag} must be a number other than 0, got {pace:g}: a scan needs motion; a negative "
-            "number moves the other way."
+            f"{flag} must be a number other than 0 and between a nanometre and a kilometre, got "
+            f"{pace:g} m: a scan needs motion; a negative number moves the other way."
         )

@@ -1,5 +1,6 @@
 """A vehicle, an arm or a stage that logs where it is."""
 
+import math
 from dataclasses import dataclass, field
 from typing import ClassVar, final
 
@@ -24,7 +25,18 @@ class PoseLog(AbstractMotion):
     time_offset: float = 0.0
     """Added to recording times [s], against a clock that runs ahead or behind."""
 
+    name: str = ""
+    """What the log is called, for the record."""
+
     needs_times: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        """Refuse a clock that is no number."""
+        if not math.isfinite(self.start_time + self.time_offset):
+            raise InputError(
+                f"The start time and the time offset must be numbers, got {self.start_time:g} and "
+                f"{self.time_offset:g} s."
+            )
 
     def follow(self, times: Scalars, pictures: Scalars) -> Trajectory:
         """Give world_from_camera at the time of each frame; see `AbstractMotion.follow`."""

@@ -1,22 +1,27 @@
 """Merge a scan's profiles into one cloud."""
 
+import time
 from typing import Any
 
 from ..cloud import merge_profiles, remove_outliers
 from ..project import Project
 from ..types.rig import Rig
+from .progress import Progress, silent
 
 FRAME_FILES = 500
 """Frames up to which the paper's one cloud a frame is written without being asked for."""
 
 
-def build_cloud(project: Project, rig: Rig, *, frames: bool = False) -> dict[str, Any]:
+def build_cloud(
+    project: Project, rig: Rig, *, frames: bool = False, progress: Progress = silent
+) -> dict[str, Any]:
     """Run the cloud stage.
 
     Args:
         project: A scan with finished triangulate and motion stages.
         rig: Its rig.
         frames: Whether to write one cloud a frame for more than 500 frames, too.
+        progress: Told when it begins and when it is done.
 
     Returns:
         Counts: points, and outliers that were taken out.
@@ -32,7 +37,9 @@ def build_cloud(project: Project, rig: Rig, *, frames: bool = False) -> dict[str
     )
     if (result := stage.result()) is not None:
         return result
+    since = time.monotonic()
     stage.begin()
+    progress("cloud", 0, None)
     profile, trajectory = project.load_profile(), project.load_trajectory()
     laser = project.finished("extract").key["settings"]["laser"]
     merged = merge_profiles(profile, trajectory, axis=rig.lasers[laser].axis)
@@ -41,5 +48,6 @@ def build_cloud(project: Project, rig: Rig, *, frames: bool = False) -> dict[str
     if frames or project.finished("extract").counts()["frames"] <= FRAME_FILES:
         project.save_frames(cloud)
     result = {"points": len(cloud), "outliers": len(merged) - len(cloud)}
-    stage.finish(result)
+    stage.finish(result, since=since)
+    progress("cloud", 1, 1)
     return result

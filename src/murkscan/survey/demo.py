@@ -1,6 +1,8 @@
 """The demo: simulate a recording, scan it as any other, and hold the model against the truth."""
 
+import time
 from dataclasses import dataclass
+from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
@@ -8,11 +10,12 @@ import numpy as np
 from ..capture import open_recording
 from ..io.rig_toml import load_rig
 from ..motion import ConstantSpeed
-from ..project import Project
+from ..project import Project, Stage
 from ..simulate import HULL_SPEED, distance_to_surface, hull_scene
 from ..types.arrays import Scalars
 from .progress import Progress, silent
 from .scan import scan
+from .settings import describe
 from .simulate import simulate_recording
 
 
@@ -55,7 +58,12 @@ def run_demo(
         DeviceError: The disk is full.
     """
     scene = hull_scene(noise=noise)
-    simulate_recording(scene, out / "recording", progress=progress)
+    stage = Stage(out / "recording", {"murkscan": version("murkscan"), "scene": describe(scene)})
+    if stage.result() is None:
+        since = time.monotonic()
+        stage.begin()
+        simulate_recording(scene, stage.folder, progress=progress)
+        stage.finish({"frames": len(scene.times)}, since=since)
     rig = load_rig(out / "recording" / "rig.toml")
     recording = open_recording(out / "recording" / "frames", wavelength=rig.wavelength)
     motion = ConstantSpeed(HULL_SPEED, "y")

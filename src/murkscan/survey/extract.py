@@ -1,6 +1,7 @@
 """Find the stripe in every frame of a recording, in chunks that can be resumed."""
 
 import os
+import time
 from collections import deque
 from collections.abc import Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -10,7 +11,6 @@ from typing import Any
 from ..capture import AbstractRecording, Skip
 from ..errors import InputError
 from ..extract import AbstractExtractor
-from ..io.json_files import save_json
 from ..project import Project
 from ..types.background import Background
 from ..types.frame import Frame
@@ -21,7 +21,9 @@ from .progress import Progress, silent
 from .settings import describe
 
 CHUNK = 64
-"""Frames a part: some tens of megabytes of pictures in memory."""
+"""Frames a part: 27 MB of pictures at 720 × 576."""
+_MOST_WORKERS = 4
+"""Parts in work at once; two more wait. Reading is what limits a scan, not this."""
 
 _SAMPLES = 24
 """Frames that an extractor learns from."""
@@ -74,38 +76,34 @@ def extract_recording(
     )
     if (result := stage.result()) is not None:
         return result
+    since = time.monotonic()
     stage.begin()
     progress("extract", 0, recording.num_frames)
     background = extractor.learn(recording.sample(_SAMPLES), rig)
-    save_json(stage.folder / "background.json", describe(background))
+    project.save_background(describe(background))
     job = _Job(project, rig, extractor, background, laser, overlay_step(recording))
     for part in _run(job, recording):
         progress("extract", (part + 1) * CHUNK, recording.num_frames)
     keep_overlays(project)
     result = _count(project)
-    stage.finish(result)
+    stage.finish(result, since=since)
     return result
 
 
 def check_recording(recording: AbstractRecording, rig: Rig, laser: int) -> None:
     """Refuse a recording that this rig cannot have made, and a laser that it does not have."""
+    rig.laser(laser)
     if recording.size != rig.camera.size:
         raise InputError(
             f"{recording.path} has pictures of {recording.size[0]} × {recording.size[1]} px but "
             f"the rig's camera has {rig.camera.size[0]} × {rig.camera.size[1]}; give the rig that "
             "made this recording, and never resize pictures."
         )
-    if not rig.lasers:
-        raise InputError("The rig has no laser yet; run `murkscan calibrate laser` first.")
-    if not 0 <= laser < len(rig.lasers):
-        raise InputError(
-            f"The rig has {len(rig.lasers)} laser(s), numbered from 0; there is no laser {laser}."
-        )
 
 
 def overlay_step(recording: AbstractRecording) -> int:
-    """Give the distance between frames whose overlay is always drawn: about eight a recording."""
-    return max((recording.num_frames or 8 * CHUNK) // 8, 1)
+    """Give the distance between frames that are drawn; `keep_overlays` thins them to a few."""
+    return max((recording.num_frames or 64 * CHUNK) // 8, 1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +130,7 @@ class _Job:
             "frames": [frame.index for frame, _ in found],
             "times": [frame.time for frame, _ in found],
             "points": [len(stripe) for _, stripe in found],
-            "skips": [[skip.index, skip.reason] for skip in chunk.skips],
+            "skips": [[skip.index, skip.count, skip.reason] for skip in chunk.skips],
         }
         self.project.save_stripe_part(
             chunk.part, Stripe.concatenate([stripe for _, stripe in found]), note
@@ -142,7 +140,7 @@ class _Job:
 
 def _run(job: _Job, recording: AbstractRecording) -> Iterator[int]:
     """Read on in this thread while others extract; hold few chunks at once."""
-    workers = os.cpu_count() or 1
+    workers = min(os.cpu_count() or 1, _MOST_WORKERS)
     waiting: deque[Future[int]] = deque()
     with ThreadPoolExecutor(workers) as pool:
         try:
@@ -191,10 +189,17 @@ def cut_chunks(
 
 def _cut(part: int, kept: list[Frame], skips: list[Skip], halo: int) -> _Chunk:
     low, high = part * CHUNK, (part + 1) * CHUNK
-    own = [skip for skip in skips if low <= skip.index < high]
-    skips[:] = [skip for skip in skips if skip.index >= high]
-    inside = [frame for frame in kept if low - halo <= frame.index < high + halo]
-    return _Chunk(part, inside, own)
+    own, later = list[Skip](), list[Skip]()
+    for skip in skips:
+        end = skip.index + skip.count
+        inside = (max(skip.index, low), min(end, high))
+        if inside[0] < inside[1]:
+            own.append(Skip(inside[0], skip.reason, inside[1] - inside[0]))
+        if end > high:
+            later.append(Skip(max(skip.index, high), skip.reason, end - max(skip.index, high)))
+    skips[:] = later
+    near = [frame for frame in kept if low - halo <= frame.index < high + halo]
+    return _Chunk(part, near, own)
 
 
 def _count(project: Project) -> dict[str, Any]:
@@ -203,7 +208,7 @@ def _count(project: Project) -> dict[str, Any]:
     skips = [skip for note in notes for skip in note["skips"]]
     return {
         "frames": len(points),
-        "skipped": len(skips),
+        "skipped": sum(count for _, count, _ in skips),
         "frames_without_stripe": points.count(0),
         "points": sum(points),
         "skips": skips,

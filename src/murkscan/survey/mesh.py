@@ -1,18 +1,23 @@
 """Make a surface from a scan's cloud."""
 
+import time
 from typing import Any
 
 from ..mesh import AbstractMesher
 from ..project import Project
+from .progress import Progress, silent
 from .settings import describe
 
 
-def build_mesh(project: Project, mesher: AbstractMesher) -> dict[str, Any]:
+def build_mesh(
+    project: Project, mesher: AbstractMesher, *, progress: Progress = silent
+) -> dict[str, Any]:
     """Run the mesh stage.
 
     Args:
         project: A scan with a finished cloud stage.
         mesher: The way to make a surface.
+        progress: Told when it begins and when it is done.
 
     Returns:
         Counts: vertices and faces; both 0 for a cloud that has no two neighbouring profiles.
@@ -29,10 +34,13 @@ def build_mesh(project: Project, mesher: AbstractMesher) -> dict[str, Any]:
     )
     if (result := stage.result()) is not None:
         return result
+    since = time.monotonic()
+    progress("mesh", 0, None)
     mesh = mesher.mesh(project.load_cloud())
     stage.begin()
     if len(mesh.faces):
         project.save_mesh(mesh)
     result = {"vertices": len(mesh.vertices), "faces": len(mesh.faces)}
-    stage.finish(result)
+    stage.finish(result, since=since)
+    progress("mesh", 1, 1)
     return result

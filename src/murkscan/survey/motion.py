@@ -1,5 +1,6 @@
 """Where the camera was in each frame of a scan."""
 
+import time
 from typing import Any
 
 import numpy as np
@@ -29,12 +30,8 @@ def follow_motion(project: Project, motion: AbstractMotion) -> dict[str, Any]:
     )
     if (result := stage.result()) is not None:
         return result
-    if motion.needs_times and not recording["is_timed"]:
-        raise InputError(
-            f"{recording['path']} has no times, and the motion needs them: give --fps, or a "
-            "times.csv in the folder, or say with --step-mm how far the camera moves from picture "
-            "to picture."
-        )
+    since = time.monotonic()
+    check_times(recording["path"], motion, is_timed=recording["is_timed"])
     times = project.load_frame_times()
     pictures = times.frame.astype(float) / recording["fields_per_picture"]
     trajectory = motion.follow(times.time, pictures)
@@ -46,5 +43,14 @@ def follow_motion(project: Project, motion: AbstractMotion) -> dict[str, Any]:
         "duration_s": float(np.ptp(times.time)),
         "length_m": float(steps.sum()),
     }
-    stage.finish(result)
+    stage.finish(result, since=since)
     return result
+
+
+def check_times(recording: object, motion: AbstractMotion, *, is_timed: bool) -> None:
+    """Refuse a motion that needs times where the recording has none."""
+    if motion.needs_times and not is_timed:
+        raise InputError(
+            f"{recording} has no times, and the motion needs them: give --fps, or a times.csv in "
+            "the folder, or say with --step-mm how far the camera moves from picture to picture."
+        )

@@ -1,15 +1,15 @@
 """Tell how a scan went: one page for people, one file for programs."""
 
+import time
 from typing import Any
 
-from ..io.json_files import save_json
-from ..io.text import save_text
 from ..project import STAGES, Project
 from ..report import Recorded, ScanSummary, Shown, as_html, as_json, summarise
+from .progress import Progress, silent
 from .scan_rig import load_scan_rig
 
 
-def write_report(project: Project) -> dict[str, Any]:
+def write_report(project: Project, *, progress: Progress = silent) -> dict[str, Any]:
     """Run the report stage, from what the other stages have left.
 
     Returns:
@@ -22,17 +22,19 @@ def write_report(project: Project) -> dict[str, Any]:
     stage = project.stage("report", settings={}, inputs={"view": project.finished("view").digest})
     if (result := stage.result()) is not None:
         return result
+    since = time.monotonic()
+    progress("report", 0, None)
     summary = _summarise(project)
     stage.begin()
-    save_json(stage.folder / "report.json", as_json(summary))
-    save_text(stage.folder / "index.html", as_html(summary))
+    project.save_report(as_json(summary), as_html(summary))
     result = {
         "frames": summary.num_frames,
         "skipped": len(summary.recorded.skips),
         "frames_without_stripe": summary.num_empty,
         "points": summary.num_points,
     }
-    stage.finish(result)
+    stage.finish(result, since=since)
+    progress("report", 1, 1)
     return result
 
 
@@ -47,7 +49,7 @@ def _summarise(project: Project) -> ScanSummary:
             size=tuple(recording["size"]),
             fields_per_picture=recording["fields_per_picture"],
             is_timed=recording["is_timed"],
-            skips=[(index, reason) for index, reason in extract.counts()["skips"]],
+            skips=[(index, reason) for index, _, reason in extract.counts()["skips"]],
         ),
         load_scan_rig(project),
         project.load_profile_parts(),
@@ -69,12 +71,11 @@ def _pictures(project: Project) -> list[Shown]:
         Shown(f"../view/{name}.png", name.replace("-", ", coloured by "))
         for name in project.finished("view").counts()["pictures"]
     ]
-    overlays = sorted((project.root / "extract" / "overlay").glob("*.png"))
     found = [
         Shown(
             f"../extract/overlay/{file.name}",
             f"what was found in frame {int(file.stem.split('_')[0])}",
         )
-        for file in overlays
+        for file in project.find_overlays()
     ]
     return views + found

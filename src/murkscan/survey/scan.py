@@ -18,7 +18,7 @@ from ..types.rig import Rig
 from .cloud import build_cloud
 from .extract import check_recording, extract_recording
 from .mesh import build_mesh
-from .motion import follow_motion
+from .motion import check_times, follow_motion
 from .progress import Progress, silent
 from .report import write_report
 from .settings import describe
@@ -66,15 +66,16 @@ def scan(
     """
     extractor, method = extractor or GrayGravity(), method or RaySheet()
     mesher = mesher or GridMesh()
+    check_times(recording.path, motion, is_timed=recording.is_timed)
     settings = {"extractor": extractor, "method": method, "motion": motion, "mesher": mesher}
     project = begin_scan(out, recording, rig, laser=laser, settings=settings)
     extract_recording(project, recording, rig, extractor, laser=laser, progress=progress)
     triangulate_stripes(project, rig, method, progress=progress)
     follow_motion(project, motion)
-    build_cloud(project, rig, frames=frames)
-    build_mesh(project, mesher)
+    build_cloud(project, rig, frames=frames, progress=progress)
+    build_mesh(project, mesher, progress=progress)
     draw_views(project, progress=progress)
-    write_report(project)
+    write_report(project, progress=progress)
     return project
 
 

@@ -11,11 +11,11 @@ import numpy as np
 def describe(value: Any) -> Any:
     """Give a Choice or a value as plain values that change whenever it changes.
 
-    A dataclass becomes its name and its fields, an array a short digest of its bytes.
+    A dataclass becomes its type and its fields, an array a short digest of its bytes.
     """
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         inside = {f.name: describe(getattr(value, f.name)) for f in dataclasses.fields(value)}
-        return {"choice": type(value).__name__, **inside}
+        return {"type": type(value).__name__, **inside}
     if isinstance(value, np.ndarray):
         return "array " + hashlib.sha256(value.tobytes()).hexdigest()[:16]
     if isinstance(value, Path):

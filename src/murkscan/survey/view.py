@@ -1,9 +1,8 @@
 """Draw pictures of a scan's surface."""
 
+import time
 from typing import Any
 
-from ..io.images import write_image
-from ..io.text import save_text
 from ..page import Gallery, Note, Picture, Section, render_page
 from ..project import Project
 from ..view import draw_pictures
@@ -24,17 +23,18 @@ def draw_views(project: Project, *, progress: Progress = silent) -> dict[str, An
     stage = project.stage("view", settings={}, inputs={"mesh": source.digest})
     if (result := stage.result()) is not None:
         return result
+    since = time.monotonic()
     stage.begin()
     names: list[str] = []
     if source.counts()["faces"]:
         pictures = draw_pictures(project.load_mesh(), project.load_trajectory())
         for name, picture in pictures.items():
-            write_image(stage.folder / f"{name}.png", picture)
+            project.save_picture(name, picture)
             names.append(name)
             progress("view", len(names), len(pictures))
     result = {"pictures": names}
-    save_text(stage.folder / "index.html", _page(project, names))
-    stage.finish(result)
+    project.save_view_page(_page(project, names))
+    stage.finish(result, since=since)
     return result
 
 

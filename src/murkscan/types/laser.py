@@ -181,5 +181,5 @@ class Laser:
         """
         plane = self.as_plane()
         along, forward = plane.normal["xy".index(self.axis)], plane.normal[2]
-        baseline = plane.distance / along
+        baseline = plane.distance / along if along else math.copysign(math.inf, plane.distance)
         return float(baseline), math.atan2(abs(along), -forward * math.copysign(1.0, along))

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from ..errors import InputError
 from .camera import Camera
 from .laser import Laser
 from .pose import Pose
@@ -21,3 +22,18 @@ class Rig:
     """What the rig is in, behind its ports; None for air."""
     vehicle_from_camera: Pose | None = None
     """The mount, where the rig sits on a vehicle whose own poses are logged."""
+
+    def laser(self, number: int) -> Laser:
+        """Give a laser by its number, from 0.
+
+        Raises:
+            InputError: The rig has no such laser.
+        """
+        if not self.lasers:
+            raise InputError("The rig has no laser yet; run `murkscan calibrate laser` first.")
+        if not 0 <= number < len(self.lasers):
+            raise InputError(
+                f"The rig has {len(self.lasers)} laser(s), numbered from 0; there is no laser "
+                f"{number}."
+            )
+        return self.lasers[number]
