@@ -119,7 +119,7 @@ def _shrink_fields(image: Image) -> list[tuple[Field, Field]]:
     return shrunk
 
 
-def _shift(field: Field, weights: Float32[np.ndarray, "taps"]) -> Field:
+def _shift(field: Field, weights: Float32[np.ndarray, " taps"]) -> Field:
     """Interpolate between rows: sums of as many neighbours as there are weights."""
     count = len(field) - len(weights) + 1
     return sum(
@@ -128,7 +128,7 @@ def _shift(field: Field, weights: Float32[np.ndarray, "taps"]) -> Field:
     )
 
 
-def _interpolation_weights(count: int, at: float) -> Float32[np.ndarray, "taps"]:
+def _interpolation_weights(count: int, at: float) -> Float32[np.ndarray, " taps"]:
     """Lagrange's weights of `count` rows around rows 0 and 1, for the place `at` between them."""
     rows = np.arange(count) - (count // 2 - 1)
     return np.array(
