@@ -4,44 +4,60 @@ import numpy as np
 from numba import njit
 
 _SIDE = 5
-"""Pixels beyond each end of the window that give the background."""
+"""Pixels on one side of a peak that give the background there."""
 
 
-@njit(cache=True, nogil=True, inline="always")
-def side_means(scan: np.ndarray, low: int, high: int) -> tuple[float, float, int]:
-    """Mean levels of the first and of the last pixels of a stretch, and how many each is of."""
-    count = max(min(_SIDE, (high - low) // 3), 1)
-    left, right = 0.0, 0.0
-    for k in range(count):
-        left += scan[low + k] / count
-        right += scan[high - 1 - k] / count
-    return left, right, count
+@njit(cache=True, nogil=True)
+def side_level(scan: np.ndarray, peak: int, way: int, half_width: int) -> tuple[float, float]:
+    """Mean level on one side of a peak, and how far away it was taken.
+
+    Just beyond the window or just within its end, whichever is darker: another stripe may lie at
+    either.
+    """
+    level, distance = np.inf, 0.0
+    for start in (half_width + 1, max(half_width + 1 - _SIDE, 1)):
+        mean, count = 0.0, 0
+        for k in range(_SIDE):
+            v = peak + way * (start + k)
+            if 0 <= v < len(scan):
+                mean += scan[v]
+                count += 1
+        if count > 0 and mean / count < level:
+            level, distance = mean / count, start + (count - 1) / 2
+    return (level, distance) if distance > 0 else (float(scan[peak]), 1.0)
 
 
 @njit(cache=True, nogil=True)
 def weigh_peaks(
-    image: np.ndarray, peaks: np.ndarray, down: bool, half_width: int, foot: float, noise: float
+    image: np.ndarray,
+    peaks: np.ndarray,
+    down: bool,
+    half_width: int,
+    foot: float,
+    least: float,
+    noise: float,
 ) -> np.ndarray:
     """Centre of mass of what each peak shows above its foot.
 
-    The background is the line through the mean levels on both sides of the window; the foot lies
+    The background is the line through the levels on both sides of the peak; the foot lies
     above it by a share of the peak's height. The window ends where the stripe first sinks below its
     foot, between two pixels.
 
     Scan lines are image columns if `down`, otherwise image rows. Gives centre, its standard
-    deviation, height over background, one peak a row (n 3); NaN where nothing rises above the foot.
+    deviation, height over background, one peak a row (n 3); NaN where it is less than `least` high.
     """
     found = np.full((len(peaks), 3), np.nan)
     for i in range(len(peaks)):
         line, peak = peaks[i]
         scan = image[:, line] if down else image[line]
-        low, high = max(peak - half_width - _SIDE, 0), min(peak + half_width + _SIDE + 1, len(scan))
-        left, right, count = side_means(scan, low, high)
-        span = max(high - low - count, 1)
-        slope = (right - left) / span
-        base = left + slope * (peak - low - (count - 1) / 2)
+        low, high = max(peak - half_width, 0), min(peak + half_width + 1, len(scan))
+        left, before = side_level(scan, peak, -1, half_width)
+        right, after = side_level(scan, peak, 1, half_width)
+        slope = (right - left) / (before + after)
+        base = left + slope * before
         height = scan[peak] - base
-        mass, moment, spread = 0.0, 0.0, 0.0
+        # The peak's own pixel holds light from all of its width: a twelfth of a square pixel.
+        mass, moment, spread = 0.0, 0.0, 1.0 / 12.0
         for way in (-1, 1):
             reached, weight = 0, (1.0 - foot) * height
             while reached < half_width and weight > 0:
@@ -58,10 +74,10 @@ def weigh_peaks(
                 moment += near * at + far * way * (reached + 1)
                 spread += reached**2
                 reached, weight = reached + 1, beyond
-        if mass > 0:
+        if mass > 0 and height >= least:
             shift = moment / mass
             # How far the background's slope is uncertain, and how far that moves the centre.
-            tilt = spread * np.sqrt(2.0 / count) / span
+            tilt = spread * np.sqrt(2.0 / _SIDE) / (before + after)
             found[i, 0] = peak + shift
             found[i, 1] = noise * np.sqrt(spread + tilt**2) / mass
             found[i, 2] = height

@@ -3,7 +3,7 @@
 import numpy as np
 from numba import njit
 
-from .gray_gravity import side_means
+from .gray_gravity import side_level
 
 _MOVES = 4
 """Pixels that a peak may be moved along its scan line until the ridge lies within it."""
@@ -60,8 +60,8 @@ def find_ridges(
                 found[i, 0] = position + offset
                 found[i, 1] = noise * np.sqrt(total) / abs(curve * across)
                 scan = image[:, line] if down else image[line]
-                low, high = max(position - size, 0), min(position + size + 1, len(scan))
-                left, right, _ = side_means(scan, low, high)
+                left, _ = side_level(scan, position, -1, size // 2)
+                right, _ = side_level(scan, position, 1, size // 2)
                 found[i, 2] = scan[position] - 0.5 * (left + right)
                 break
             position += int(np.rint(min(max(offset, -2.0), 2.0)))

@@ -48,7 +48,7 @@ class Chessboard:
 
     def __post_init__(self) -> None:
         """Refuse boards that cannot be."""
-        if self.columns < 3 or self.rows < 3:
+        if not (3 <= self.columns <= 100 and 3 <= self.rows <= 100):
             raise InputError(
                 f"A board needs at least 3x3 inner corners, got {self}: count the corners where "
                 "two black squares touch, not the squares."

@@ -29,6 +29,7 @@ app = App(
     help="Measured 3D models of objects in murky water, from a camera and a line laser.",
     version=lambda: version("murkscan"),
     version_flags=["--version"],
+    suppress_keyboard_interrupt=False,
 )
 for _name, _help in _COMMANDS.items():
     _target = "app" if _name == "calibrate" else _name
@@ -55,7 +56,6 @@ def run(arguments: list[str]) -> int:
             exit_on_error=False,
             print_error=False,
             result_action="return_value",
-            suppress_keyboard_interrupt=False,
         )
     except (MurkscanError, CycloptsError) as error:
         return _say(str(error), 2)

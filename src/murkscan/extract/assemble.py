@@ -9,6 +9,8 @@ from ..types.stripe import Stripe
 
 _APART = 1.0
 """Centres of one scan line that are closer than this are one centre, found twice [px]."""
+_FAINT = 0.25
+"""Share of a brighter centre's height below which one near it is no surface of its own."""
 _MOST = 256
 """Branches of a scan line that have a number."""
 
@@ -22,6 +24,7 @@ def assemble_stripe(
     centres: Scalars,
     sigma: Scalars,
     signal: Scalars,
+    shadow: float = 0.0,
 ) -> Stripe:
     """Order centres by scan line, number their branches, and give them in full-frame pixels.
 
@@ -33,10 +36,12 @@ def assemble_stripe(
         centres: Position along the scan line [px of the image]; rows with NaN are left out.
         sigma: Standard deviation of each centre [px of the image].
         signal: Height of the stripe above its surroundings [grey levels].
+        shadow: Distance from a brighter centre up to which a much fainter one is its halo or its
+            speckle, and is left out [px of the image].
     """
     order = np.lexsort((-signal, lines))
     order = order[np.isfinite(centres[order])]
-    branch = _number_branches(lines[order], centres[order])
+    branch = _number_branches(lines[order], centres[order], signal[order], shadow)
     order, branch = order[branch < _MOST], branch[branch < _MOST]
     lines, centres, n = lines[order], centres[order], len(order)
     if axis == "y":
@@ -56,18 +61,22 @@ def assemble_stripe(
     )
 
 
-def _number_branches(lines: Indices, centres: Scalars) -> Indices:
-    """Count up within each scan line; a centre found twice gets a number out of range."""
+def _number_branches(lines: Indices, centres: Scalars, signal: Scalars, shadow: float) -> Indices:
+    """Count up within each scan line; what is no centre of its own gets a number out of range."""
     branch = np.zeros(len(lines), np.int64)
-    kept: list[float] = []
+    kept: list[int] = []
     # Few scan lines have more than one centre: only these are looked at one by one.
-    several = np.flatnonzero(np.diff(lines, prepend=-1) == 0)
-    for i in several:
-        if branch[i - 1] == 0 and lines[i - 1] != (lines[i - 2] if i > 1 else -1):
-            kept = [float(centres[i - 1])]
-        if min(abs(centres[i] - other) for other in kept) < _APART:
+    for i in np.flatnonzero(np.diff(lines, prepend=-1) == 0).tolist():
+        if i < 2 or lines[i - 1] != lines[i - 2]:
+            kept = [i - 1]
+        apart = [abs(centres[i] - centres[other]) for other in kept]
+        hidden = (
+            distance < shadow and signal[i] < _FAINT * signal[other]
+            for distance, other in zip(apart, kept, strict=True)
+        )
+        if min(apart) < _APART or any(hidden):
             branch[i] = _MOST
         else:
             branch[i] = len(kept)
-            kept.append(float(centres[i]))
+            kept.append(i)
     return branch

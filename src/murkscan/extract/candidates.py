@@ -45,6 +45,10 @@ class Candidates:
                 f"{self.min_contrast:g}."
             )
 
+    def rise(self, background: Background) -> float:
+        """Give the height that a stripe must have [grey levels]."""
+        return max(self.min_height, self.min_contrast * background.noise)
+
     def extract(
         self,
         frames: Iterable[Frame],
@@ -55,7 +59,7 @@ class Candidates:
     ) -> Iterator[Stripe]:
         """Find the peaks of each frame, measure them, and assemble its stripe."""
         axis = rig.lasers[laser].axis
-        rise = math.ceil(max(self.min_height, self.min_contrast * background.noise))
+        rise = math.ceil(self.rise(background))
         near = math.ceil(self.half_width)
         for frame in frames:
             image, down = np.ascontiguousarray(frame.image), axis == "y"
@@ -63,5 +67,12 @@ class Candidates:
             peaks = find_peaks(image, down, rise, near + _CLEAR, near, _MOST * num_lines)
             centres, sigma, signal = measure(image, peaks, down).T
             yield assemble_stripe(
-                frame, axis, laser, lines=peaks[:, 0], centres=centres, sigma=sigma, signal=signal
+                frame,
+                axis,
+                laser,
+                lines=peaks[:, 0],
+                centres=np.where(signal >= self.rise(background), centres, np.nan),
+                sigma=sigma,
+                signal=signal,
+                shadow=2.0 * (near + _CLEAR),
             )

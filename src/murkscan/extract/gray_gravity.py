@@ -49,10 +49,10 @@ class GrayGravity(AbstractExtractor):
         self, frames: Iterable[Frame], rig: Rig, background: Background, *, laser: int = 0
     ) -> Iterator[Stripe]:
         """Find the stripe in each frame; see `AbstractExtractor.extract`."""
-        half_width = math.ceil(self.half_width)
+        half_width, least = math.ceil(self.half_width), self._candidates().rise(background)
 
         def measure(image: Image, peaks: np.ndarray, down: bool) -> np.ndarray:
-            return weigh_peaks(image, peaks, down, half_width, self.foot, background.noise)
+            return weigh_peaks(image, peaks, down, half_width, self.foot, least, background.noise)
 
         return self._candidates().extract(frames, rig, background, laser, measure)
 

@@ -1,11 +1,13 @@
 """Meshes as PLY, STL and GLB files, by trimesh."""
 
+import json
 from pathlib import Path
 
 import numpy as np
 import trimesh
 
 from ..errors import FormatError, InputError
+from ..types.arrays import Faces
 from ..types.mesh import Mesh
 from .atomic import replacing
 
@@ -54,15 +56,33 @@ def load_mesh(path: Path) -> Mesh:
     """
     kind = _kind(path)
     data = path.read_bytes()
+    if kind == "glb":
+        _check_glb(path, data)
     try:
         loaded = trimesh.load_mesh(trimesh.util.wrap_as_stream(data), kind, process=kind == "stl")
         vertices, faces = np.asarray(loaded.vertices), np.asarray(loaded.faces)
     # Which error a damaged file ends in is up to trimesh's readers: any.
     except Exception as error:
         raise FormatError(f"{path} is not a {kind.upper()} file that can be read.") from error
-    if len(faces) == 0 or not np.isfinite(vertices).all() or faces.max() >= len(vertices):
+    if len(faces) == 0 or not np.isfinite(vertices).all() or not _is_inside(faces, len(vertices)):
         raise FormatError(f"{path} has no triangles, or some without a place; it is damaged.")
     return Mesh(vertices * _GLB_FROM_OURS if kind == "glb" else vertices, faces)
+
+
+def _is_inside(faces: Faces, count: int) -> bool:
+    return bool(faces.min() >= 0 and faces.max() < count)
+
+
+def _check_glb(path: Path, data: bytes) -> None:
+    """Refuse a GLB whose tables claim more items than the file has bytes, before they are made."""
+    try:
+        length = int.from_bytes(data[12:16], "little")
+        tables = json.loads(data[20 : 20 + length])
+        counts = [int(table["count"]) for table in tables.get("accessors", [])]
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        raise FormatError(f"{path} is not a GLB file that can be read.") from error
+    if any(count > len(data) for count in counts):
+        raise FormatError(f"{path} claims {max(counts)} items in {len(data)} bytes; it is damaged.")
 
 
 def _kind(path: Path) -> str:

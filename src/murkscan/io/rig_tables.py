@@ -173,8 +173,8 @@ class _MountTable(_Table):
     quaternion_wxyz: tuple[FiniteFloat, FiniteFloat, FiniteFloat, FiniteFloat] = (1, 0, 0, 0)
 
     def as_pose(self) -> Pose:
-        if not any(self.quaternion_wxyz):
-            raise InputError("The quaternion of the mount is zero.")
+        if not 0.5 <= np.linalg.norm(self.quaternion_wxyz) <= 2:
+            raise InputError("mount.quaternion_wxyz has a length that is not 1.")
         return Pose.from_quaternion(
             np.array([self.quaternion_wxyz], float), np.array(self.translation_mm, float) / 1e3
         )
