@@ -97,7 +97,9 @@ def _summary(lit=range(2, 8), **changes):
         "durations": {"extract": 1.25},
         "pictures": [Shown("../view/isometric.png", "isometric")],
     }
-    recorded = changes.pop("recorded", Recorded("dive.mkv", (40, 30), skips=[(4, "4.png broke")]))
+    recorded = changes.pop(
+        "recorded", Recorded("dive.mkv", (40, 30), skips=[(4, 1, "4.png broke")])
+    )
     return summarise(recorded, changes.pop("rig", RIG), [profile], **(given | changes))
 
 
@@ -192,7 +194,7 @@ def test_the_summary_counts_frames_and_points():
     assert content["frames"]["read"] == 10
     assert content["frames"]["without_stripe"] == 4
     assert content["frames"]["skipped"] == 1
-    assert content["frames"]["skips"] == [{"frame": 4, "reason": "4.png broke"}]
+    assert content["frames"]["skips"] == [{"frame": 4, "frames": 1, "reason": "4.png broke"}]
     assert content["points"] == {"on_profiles": 120, "outliers": 3, "in_cloud": 120}
     assert content["mesh"] == {"vertices": 5, "faces": 2}
     assert content["spacing_along_stripe_mm"]["median"] == pytest.approx(1.0)
@@ -251,7 +253,7 @@ def test_a_recording_of_one_frame_has_a_report():
 
 def test_a_hostile_name_stays_text():
     hostile = "<script>alert(1)</script>"
-    recorded = Recorded(hostile, (40, 30), skips=[(0, hostile)])
+    recorded = Recorded(hostile, (40, 30), skips=[(0, 1, hostile)])
     page = as_html(_summary(recorded=recorded, settings={hostile: hostile}))
     assert "<script" not in page
     assert _text(page).count(hostile) == 5

@@ -203,7 +203,7 @@ def test_a_stage_that_is_older_than_its_input_is_not_taken(scanned, hull, tmp_pa
     recording, rig = _open(hull)
     project = ms.Project(tmp_path / "out")
     extract_recording(project, recording, rig, ms.Steger())
-    with pytest.raises(ms.MissingResult, match="triangulate stage .* older than its extract"):
+    with pytest.raises(ms.MissingResult, match=r"triangulate stage .* older than its extract"):
         build_cloud(project, rig)
 
 

@@ -144,7 +144,7 @@ def test_a_cloud_without_a_mesh_is_drawn_as_discs():
 
 
 def test_every_scan_gets_nine_pictures():
-    pictures = draw_pictures(box(0.3, 0.2, 0.1), size=(160, 120))
+    pictures = dict(draw_pictures(box(0.3, 0.2, 0.1), size=(160, 120)))
     assert list(pictures) == [
         *("isometric", "isometric-depth", "front", "front-depth"),
         *("back", "left", "right", "top", "bottom"),

@@ -11,7 +11,7 @@ from .atomic import replacing
 _HEADER = ["time_s", "x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"]
 
 
-def load_poses(path: Path) -> Trajectory:
+def load_poses(path: Path | str) -> Trajectory:
     """Read a log of poses world_from_camera, or world_from_vehicle.
 
     A file whose first line names the columns time_s, x_m, y_m, z_m, qw, qx, qy, qz (in any order,
@@ -21,6 +21,7 @@ def load_poses(path: Path) -> Trajectory:
     Raises:
         FormatError: The file is missing or neither; the message names the line.
     """
+    path = Path(path)
     try:
         lines = path.read_text("utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:

@@ -17,14 +17,14 @@ from .rig_tables import RigTable
 from .validation import explain
 
 
-def load_rig(path: Path) -> Rig:
+def load_rig(path: Path | str) -> Rig:
     """Read a rig file.
 
     Raises:
         FormatError: The file is missing or no TOML, a key is unknown, missing or out of range; the
             message names the file and the key.
     """
-    return parse_rig(read_tables(path), name=str(path))
+    return parse_rig(read_tables(Path(path)), name=str(path))
 
 
 def read_tables(path: Path) -> dict[str, Any]:
@@ -50,13 +50,13 @@ def parse_rig(tables: dict[str, Any], *, name: str) -> Rig:
         raise FormatError(f"{name}: {error}") from error
 
 
-def save_rig(path: Path, rig: Rig) -> None:
+def save_rig(path: Path | str, rig: Rig) -> None:
     """Write a new rig file.
 
     Raises:
         DeviceError: The disk is full or cannot be written.
     """
-    _write(path, tomlkit.parse(tomlkit.dumps(as_tables(rig))))
+    _write(Path(path), tomlkit.parse(tomlkit.dumps(as_tables(rig))))
 
 
 def save_camera(path: Path, camera: Camera, *, wavelength: float, record: dict[str, Any]) -> None:

@@ -43,7 +43,7 @@ def _headline(summary: ScanSummary) -> list[Block]:
         (format_cell(model.faces), "triangles"),
         (format_cell(summary.num_frames), f"frames read, {width} × {height} px"),
         (format_cell(summary.num_empty), "frames without a stripe"),
-        (format_cell(len(summary.recorded.skips)), "frames skipped"),
+        (format_cell(summary.recorded.num_skipped), "frames skipped"),
         (format_cell(model.outliers), "outliers taken out"),
     ]
     if summary.num_points:
@@ -56,7 +56,7 @@ def _headline(summary: ScanSummary) -> list[Block]:
 
 def _verdict(summary: ScanSummary) -> list[Block]:
     """Say in plain words how the scan went."""
-    frames, empty, skipped = summary.num_frames, summary.num_empty, len(summary.recorded.skips)
+    frames, empty, skipped = summary.num_frames, summary.num_empty, summary.recorded.num_skipped
     if summary.num_points == 0:
         return [
             Note(
@@ -106,7 +106,7 @@ def _figures(spread: Spread, scale: float) -> list[float | None]:
 
 def _skips(summary: ScanSummary) -> list[Block]:
     skips = summary.recorded.skips
-    blocks: list[Block] = [Table(skips[:_SKIPS_SHOWN], head=("frame", "reason"))]
+    blocks: list[Block] = [Table(skips[:_SKIPS_SHOWN], head=("frame", "frames", "reason"))]
     if len(skips) > _SKIPS_SHOWN:
         rest = format_cell(len(skips) - _SKIPS_SHOWN)
         blocks.append(Note(f"And {rest} more, listed in report.json."))

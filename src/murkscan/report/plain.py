@@ -46,9 +46,12 @@ def _counts(summary: ScanSummary) -> dict[str, Any]:
         },
         "frames": {
             "read": summary.num_frames,
-            "skipped": len(recorded.skips),
+            "skipped": recorded.num_skipped,
             "without_stripe": summary.num_empty,
-            "skips": [{"frame": index, "reason": reason} for index, reason in recorded.skips],
+            "skips": [
+                {"frame": index, "frames": count, "reason": reason}
+                for index, count, reason in recorded.skips
+            ],
         },
         "points": {
             "on_profiles": summary.num_points,

@@ -33,8 +33,13 @@ class Recorded:
     """2 where the recording is interlaced."""
     is_timed: bool = True
     """Whether times are real; otherwise they count pictures."""
-    skips: Sequence[tuple[int, str]] = ()
-    """Index of each frame that could not be read, and why."""
+    skips: Sequence[tuple[int, int, str]] = ()
+    """What could not be read: index of the first frame, how many frames, and why."""
+
+    @property
+    def num_skipped(self) -> int:
+        """Frames that could not be read."""
+        return sum(count for _, count, _ in self.skips)
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,7 @@
 """Tell how a scan went: one page for people, one file for programs."""
 
 import time
+from pathlib import Path
 from typing import Any
 
 from ..project import STAGES, Project
@@ -29,7 +30,7 @@ def write_report(project: Project, *, progress: Progress = silent) -> dict[str, 
     project.save_report(as_json(summary), as_html(summary))
     result = {
         "frames": summary.num_frames,
-        "skipped": len(summary.recorded.skips),
+        "skipped": summary.recorded.num_skipped,
         "frames_without_stripe": summary.num_empty,
         "points": summary.num_points,
     }
@@ -45,11 +46,11 @@ def _summarise(project: Project) -> ScanSummary:
     recording = scan["recording"]
     return summarise(
         Recorded(
-            name=recording["path"],
+            name=Path(recording["path"]).name,
             size=tuple(recording["size"]),
             fields_per_picture=recording["fields_per_picture"],
             is_timed=recording["is_timed"],
-            skips=[(index, reason) for index, _, reason in extract.counts()["skips"]],
+            skips=[tuple(skip) for skip in extract.counts()["skips"]],
         ),
         load_scan_rig(project),
         project.load_profile_parts(),
@@ -79,3 +80,8 @@ def _pictures(project: Project) -> list[Shown]:
         for file in project.find_overlays()
     ]
     return views + found
+
+
+def _caption(overlay: str) -> str:
+    frame, _, poor = overlay.partition("_")
+    return f"what was found in frame {int(frame)}{', one of the poorest' if poor else ''}"

@@ -1,11 +1,12 @@
 """Draw pictures of a scan's surface."""
 
 import time
+from pathlib import Path
 from typing import Any
 
 from ..page import Gallery, Note, Picture, Section, render_page
 from ..project import Project
-from ..view import draw_pictures
+from ..view import PICTURES, draw_pictures
 from .progress import Progress, silent
 
 
@@ -27,11 +28,11 @@ def draw_views(project: Project, *, progress: Progress = silent) -> dict[str, An
     stage.begin()
     names: list[str] = []
     if source.counts()["faces"]:
-        pictures = draw_pictures(project.load_mesh(), project.load_trajectory())
-        for name, picture in pictures.items():
+        progress("view", 0, len(PICTURES))
+        for name, picture in draw_pictures(project.load_mesh(), project.load_trajectory()):
             project.save_picture(name, picture)
             names.append(name)
-            progress("view", len(names), len(pictures))
+            progress("view", len(names), len(PICTURES))
     result = {"pictures": names}
     project.save_view_page(_page(project, names))
     stage.finish(result, since=since)
@@ -40,7 +41,7 @@ def draw_views(project: Project, *, progress: Progress = silent) -> dict[str, An
 
 def _page(project: Project, names: list[str]) -> str:
     """Show the pictures side by side."""
-    title = project.load_scan()["recording"]["path"]
+    title = Path(project.load_scan()["recording"]["path"]).name
     if not names:
         empty = Note("There is no surface to draw: no stripe was found in two frames or more.")
         return render_page("Pictures", [Section("", [empty])], subtitle=title)

@@ -3,6 +3,7 @@
 from .base import AbstractColours as AbstractColours
 from .base import Legend as Legend
 from .depth import Depth as Depth
+from .gallery import PICTURES as PICTURES
 from .gallery import draw_pictures as draw_pictures
 from .plain import Plain as Plain
 from .render import render as render

@@ -1,0 +1,34 @@
+"""What the README shows runs, and what pages link to is there."""
+
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_every_link_leads_somewhere(page):
+    links = re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text("utf-8"))
+    missing = [link for link in links if "://" not in link and not (page.parent / link).exists()]
+    assert missing == []
+
+
+def test_the_readme_s_python_runs_as_printed(hull, tmp_path):
+    """Its recording is a folder here; a path is a path."""
+    code = re.search(r"```python\n(.*?)```", (ROOT / "README.md").read_text("utf-8"), re.S)[1]
+    shutil.copy(hull / "rig.toml", tmp_path)
+    shutil.copytree(hull / "frames", tmp_path / "dive.mkv")
+    done = subprocess.run(
+        [sys.executable, "-c", code + "\nassert len(cloud) and len(mesh.faces)"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
