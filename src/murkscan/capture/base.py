@@ -2,6 +2,7 @@
 
 import abc
 import hashlib
+import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -89,8 +90,8 @@ def fingerprint_files(files: Sequence[Path], reading: object) -> str:
         files: The files that hold the pictures.
         reading: Whatever else the frames and their times depend on; its `repr` counts.
     """
-    digest = hashlib.sha256(f"{reading!r}\n".encode())
+    digest = hashlib.sha256(os.fsencode(f"{reading!r}\n"))
     for file in files:
         state = file.stat()
-        digest.update(f"{file.name}\0{state.st_size}\0{state.st_mtime_ns}\n".encode())
+        digest.update(os.fsencode(f"{file.name}\0{state.st_size}\0{state.st_mtime_ns}\n"))
     return digest.hexdigest()

@@ -12,7 +12,7 @@ from ..errors import DeviceError
 
 def is_camera(source: str) -> bool:
     """Tell whether a source is a local camera: its number, or /dev/video and its number."""
-    return re.fullmatch(r"[0-9]+|/dev/video[0-9]+", source) is not None
+    return re.fullmatch(r"[0-9]{1,3}|/dev/video[0-9]+", source) is not None
 
 
 def camera_images(source: str) -> Iterator[tuple[np.ndarray, float]]:

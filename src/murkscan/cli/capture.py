@@ -4,7 +4,7 @@ from collections.abc import Generator, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from cyclopts import Parameter
+from cyclopts import Parameter, validators
 from cyclopts.types import PositiveFloat
 
 if TYPE_CHECKING:
@@ -16,7 +16,9 @@ def capture(
     out: Path,
     *,
     seconds: PositiveFloat | None = None,
-    timeout: Annotated[PositiveFloat, Parameter(name="--timeout-s")] = 10.0,
+    timeout: Annotated[
+        PositiveFloat, Parameter(name="--timeout-s", validator=validators.Number(lte=86400))
+    ] = 10.0,
 ) -> None:
     """Record a stream or a camera into a file, as it comes.
 
