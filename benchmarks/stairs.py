@@ -93,9 +93,9 @@ def main() -> None:
         figures,
         note="65 real photographs of a red line, 1 mm apart, in air. Heights are medians over each "
         "step, from a plane fitted to the scan's own bed; flatness is 1.4826 times the median "
-        "absolute deviation. The rig is the author's, not calibrated from photographs. The bed is not "
-        "flat: it sags by 0.3 mm along the travel, and with a plane through other parts of it the "
-        "error after one scale lies anywhere from 0.03 to 0.06 mm, for every extractor.",
+        "absolute deviation. The rig is the author's, not calibrated from photographs. The bed is "
+        "not flat: it sags by 0.3 mm along the travel, and with a plane through other parts of it "
+        "the error after one scale lies anywhere from 0.03 to 0.06 mm, for every extractor.",
     )
 
 

@@ -43,6 +43,9 @@ def test_each_stage_alone_makes_what_scan_makes(short, tmp_path, capsys):
     said = capsys.readouterr().out
     assert "20 read, 0 skipped" in said
     assert "mesh.glb" in said
+    assert "nothing had changed" not in said
+    assert run(["scan", *_arguments(short, *step, "--out", str(whole))]) == 0
+    assert "nothing had changed" in capsys.readouterr().out
 
 
 def test_the_paper_as_printed_runs_too(short, tmp_path):

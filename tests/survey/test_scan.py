@@ -221,6 +221,18 @@ def test_another_rate_gives_other_times(hull, tmp_path):
     assert np.ptp(project.load_trajectory().positions[:, 1]) == pytest.approx(0.1 * 19 / 4)
 
 
+def test_a_mesher_that_is_not_there_is_told_before_the_work(hull, tmp_path):
+    recording, rig = _open(hull)
+    try:
+        ms.Poisson().check_available()
+    except ms.MissingDependency:
+        with pytest.raises(ms.MissingDependency, match="mesh"):
+            ms.scan(recording, rig, MOTION, out=tmp_path / "out", mesher=ms.Poisson())
+        assert not (tmp_path / "out").exists()
+    else:
+        pytest.skip("Open3D is installed here")
+
+
 def test_a_motion_that_needs_times_is_refused_before_the_work(hull, tmp_path):
     (tmp_path / "frames").mkdir()
     shutil.copy(hull / "frames/000050.png", tmp_path / "frames")

@@ -58,9 +58,9 @@ def scan(
     """
     from ..io.rig_toml import load_rig
     from ..survey.scan import scan as run
-    from .summary import print_summary
+    from .summary import print_summary, when_reported
 
-    of_recording = load_rig(rig)
+    of_recording, before = load_rig(rig), when_reported(out)
     with progress_bars() as progress:
         project = run(
             reading.open(recording, of_recording),
@@ -75,3 +75,5 @@ def scan(
             progress=progress,
         )
     print_summary(project)
+    if before is not None and before == when_reported(out):
+        print("All of this was there already, and nothing had changed.")

@@ -29,6 +29,12 @@ def print_skips(skips: list[tuple[int, int, str]]) -> None:
         print(f"  and {len(skips) - _SKIPS_SHOWN} more; see the report")
 
 
+def when_reported(out: Path) -> int | None:
+    """Give the time at which a scan's report was finished last [ns]; None where it was not."""
+    note = out / "report" / "stage.json"
+    return note.stat().st_mtime_ns if note.exists() else None
+
+
 def print_summary(project: "Project") -> None:
     """Say what a whole scan has made, and where it lies."""
     found = project.finished("extract").counts()

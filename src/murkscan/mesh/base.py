@@ -11,6 +11,13 @@ from ..types.mesh import Mesh
 class AbstractMesher(abc.ABC):
     """A way to make a surface of points. Subclasses are final: wrap one, do not subclass it."""
 
+    def check_available(self) -> None:  # noqa: B027  most meshers need nothing
+        """Refuse now what `mesh` would refuse after an hour of other work.
+
+        Raises:
+            MissingDependency: The mesher needs an extra that is not installed.
+        """
+
     @abc.abstractmethod
     def mesh(self, cloud: PointCloud) -> Mesh:
         """Make a surface of a scan's points.

@@ -45,6 +45,10 @@ class Poisson(AbstractMesher):
         if not 1 <= self.depth <= _MAX_DEPTH:
             raise InputError(f"depth must lie from 1 to {_MAX_DEPTH}, got {self.depth}.")
 
+    def check_available(self) -> None:
+        """Refuse to begin without Open3D; see `AbstractMesher.check_available`."""
+        _import_open3d()
+
     def mesh(self, cloud: PointCloud) -> Mesh:
         """Make the surface; its vertices lie near the points, not on them."""
         open3d = _import_open3d()
@@ -62,7 +66,7 @@ def _import_open3d() -> "ModuleType":
         import open3d
     except (ImportError, OSError) as error:
         raise MissingDependency(
-            'Poisson needs open3d: pip install "murkscan[mesh]".'
+            'Poisson needs Open3D: pip install "murkscan[mesh]", or ".[mesh]" in a clone.'
             if isinstance(error, ModuleNotFoundError)
             else f"open3d is installed but does not load ({error}); on Debian and Ubuntu it needs "
             "apt-get install libusb-1.0-0."

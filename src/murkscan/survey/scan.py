@@ -62,10 +62,12 @@ def scan(
     Raises:
         InputError: The recording is not of this rig, or the motion says nothing about its times.
         FormatError: Nothing of the recording can be read.
+        MissingDependency: The mesher needs an extra that is not installed.
         DeviceError: The disk is full; what is finished is kept.
     """
     extractor, method = extractor or GrayGravity(), method or RaySheet()
     mesher = mesher or GridMesh()
+    mesher.check_available()
     check_times(recording.path, motion, is_timed=recording.is_timed)
     settings = {"extractor": extractor, "method": method, "motion": motion, "mesher": mesher}
     project = begin_scan(out, recording, rig, laser=laser, settings=settings)
