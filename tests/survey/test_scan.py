@@ -69,6 +69,18 @@ def test_a_repeated_scan_skips_what_is_done(scanned, hull):
     assert {file: file.stat().st_mtime_ns for file in scanned.root.rglob("*.p*")} == before
 
 
+def test_a_file_that_others_put_beside_a_result_is_no_reason_to_begin_again(
+    hull, tmp_path, scanned
+):
+    shutil.copytree(scanned.root, tmp_path / "out")
+    (tmp_path / "out/view/.DS_Store").write_bytes(b"a file browser's notes")
+    picture = tmp_path / "out/view/isometric.png"
+    before = picture.stat().st_mtime_ns
+    recording, rig = _open(hull)
+    ms.scan(recording, rig, MOTION, out=tmp_path / "out")
+    assert picture.stat().st_mtime_ns == before
+
+
 def test_another_motion_redoes_only_what_depends_on_it(scanned, hull, tmp_path):
     shutil.copytree(scanned.root, tmp_path / "out")
     stripes = tmp_path / "out/extract/stripes/000000.parquet"

@@ -1,12 +1,9 @@
 """murkscan extract: find the stripe in every frame."""
 
 from pathlib import Path
-from typing import Annotated
-
-from cyclopts import Parameter
 
 from .choices import ExtractorName, make_extractor
-from .options import RecordingFlags
+from .options import RecordingFlags, Settings
 from .progress import progress_bars
 
 
@@ -17,7 +14,7 @@ def extract(
     out: Path,
     reading: RecordingFlags = RecordingFlags(),
     extractor: ExtractorName = "gray-gravity",
-    settings: Annotated[tuple[str, ...], Parameter(name="--set", negative=())] = (),
+    settings: Settings = (),
     laser: int = 0,
 ) -> None:
     """Find the stripe in every frame of a recording.

@@ -1,11 +1,9 @@
 """murkscan mesh: make a surface."""
 
 from pathlib import Path
-from typing import Annotated
-
-from cyclopts import Parameter
 
 from .choices import MesherName, make_mesher
+from .options import Settings
 from .progress import progress_bars
 
 
@@ -13,7 +11,7 @@ def mesh(
     out: Path,
     *,
     mesher: MesherName = "grid",
-    settings: Annotated[tuple[str, ...], Parameter(name="--set", negative=())] = (),
+    settings: Settings = (),
 ) -> None:
     """Make a surface from the cloud of a scan.
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
@@ -12,6 +12,10 @@ if TYPE_CHECKING:
     from ..capture import AbstractRecording
     from ..motion import AbstractMotion
     from ..types.rig import Rig
+
+
+Settings = Annotated[tuple[str, ...], Parameter(name="--set", negative=())]
+"""Settings of a Choice, each as NAME=NUMBER."""
 
 
 @Parameter(name="*")

@@ -13,7 +13,7 @@ from .choices import (
     make_mesher,
     make_method,
 )
-from .options import MotionFlags, RecordingFlags
+from .options import MotionFlags, RecordingFlags, Settings
 from .progress import progress_bars
 
 
@@ -25,7 +25,7 @@ def scan(
     motion: MotionFlags = MotionFlags(),
     reading: RecordingFlags = RecordingFlags(),
     extractor: ExtractorName = "gray-gravity",
-    settings: Annotated[tuple[str, ...], Parameter(name="--set", negative=())] = (),
+    settings: Settings = (),
     method: MethodName = "ray-sheet",
     mesher: MesherName = "grid",
     laser: int = 0,

@@ -40,12 +40,12 @@ class PoseLog(AbstractMotion):
 
     def follow(self, times: Scalars, pictures: Scalars) -> Trajectory:
         """Give world_from_camera at the time of each frame; see `AbstractMotion.follow`."""
-        moments, known = times + self.time_offset + self.start_time, self.log.times
-        if moments[0] < known[0] or moments[-1] > known[-1]:
+        try:
+            sampled = self.log.at(times + self.time_offset + self.start_time)
+        except InputError as error:
             raise InputError(
-                f"The recording runs from {moments[0]:.3f} to {moments[-1]:.3f} s but the pose log "
-                f"from {known[0]:.3f} to {known[-1]:.3f} s. Say with --start-time when the video "
-                "began, or shift its clock with --time-offset-s."
-            )
-        poses = self.log.at(moments).follow_mount(self.vehicle_from_camera)
+                f"{error} Say with --start-time when the video began, or shift its clock with "
+                "--time-offset-s."
+            ) from error
+        poses = sampled.follow_mount(self.vehicle_from_camera)
         return Trajectory(times, poses.positions, poses.quaternions)
