@@ -9,6 +9,7 @@ from ..types.camera import Camera
 from ..types.laser import Fan, Laser
 from ..types.port import FlatPort, Port
 from ..types.rig import Rig
+from ..types.rig_covariance import RigCovariance
 from ..types.water import Water
 
 
@@ -27,7 +28,19 @@ def as_tables(rig: Rig) -> dict[str, Any]:
             "translation_mm": (rig.vehicle_from_camera.translation * 1e3).tolist(),
             "quaternion_wxyz": rig.vehicle_from_camera.as_quaternion()[0].tolist(),
         }
+    if rig.covariance.names:
+        tables["calibration"] = {"covariance": covariance_table(rig.covariance)}
     return tables
+
+
+def covariance_table(covariance: RigCovariance) -> dict[str, Any]:
+    """Give [calibration.covariance]; its numbers are in px, m and rad, as `units` says."""
+    return {
+        "parameters": list(covariance.names),
+        "units": list(covariance.units),
+        # All digits: of parameters that nearly vary as one, little is left but the last.
+        "matrix": covariance.matrix.tolist(),
+    }
 
 
 def camera_table(camera: Camera) -> dict[str, Any]:

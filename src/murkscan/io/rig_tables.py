@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, PositiveFloat
@@ -17,6 +17,7 @@ from ..types.plane import Plane
 from ..types.port import DomePort, FlatPort, Layer, Port
 from ..types.pose import Pose
 from ..types.rig import Rig
+from ..types.rig_covariance import RigCovariance
 from ..types.water import Water
 
 _Positive = Annotated[PositiveFloat, Field(allow_inf_nan=False)]
@@ -183,6 +184,29 @@ class _MountTable(_Table):
 _LaserTable = Annotated[_BaselineAngleTable | _PlaneTable | _FanTable, Field(discriminator="kind")]
 
 
+class _CovarianceTable(_Table):
+    parameters: list[str]
+    units: list[str] = []
+    matrix: list[list[FiniteFloat]]
+
+    def as_covariance(self) -> RigCovariance:
+        count = len(self.parameters)
+        if [len(row) for row in self.matrix] != [count] * count:
+            raise InputError(
+                f"calibration.covariance.matrix must have {count} rows and columns, one a "
+                "parameter; run `murkscan calibrate` again, or take [calibration.covariance] out."
+            )
+        with _named("calibration.covariance"):
+            matrix = np.array(self.matrix, float).reshape(count, count)
+            return RigCovariance(tuple(self.parameters), matrix)
+
+
+class _CalibrationTable(BaseModel):
+    model_config = ConfigDict(extra="allow")
+
+    covariance: _CovarianceTable | None = None
+
+
 class RigTable(_Table):
     """All of rig.toml."""
 
@@ -192,7 +216,7 @@ class RigTable(_Table):
     laser: list[_LaserTable] = []
     water: _WaterTable | None = None
     mount: _MountTable | None = None
-    calibration: dict[str, Any] = {}
+    calibration: _CalibrationTable = _CalibrationTable()
 
     def as_rig(self) -> Rig:
         """Give the rig.
@@ -200,6 +224,7 @@ class RigTable(_Table):
         Raises:
             InputError: Values that do not go together; the message names the key.
         """
+        covariance = self.calibration.covariance
         return Rig(
             camera=self.camera.as_camera(),
             lasers=tuple(
@@ -208,6 +233,7 @@ class RigTable(_Table):
             wavelength=self.wavelength_nm / 1e9,
             water=None if self.water is None else self.water.as_water(),
             vehicle_from_camera=None if self.mount is None else self.mount.as_pose(),
+            covariance=RigCovariance() if covariance is None else covariance.as_covariance(),
         )
 
 

@@ -10,9 +10,10 @@ from ..errors import FormatError, InputError
 from ..types.camera import Camera
 from ..types.laser import Laser
 from ..types.rig import Rig
+from ..types.rig_covariance import RigCovariance
 from .atomic import replacing
 from .rig_as_tables import as_tables as as_tables
-from .rig_as_tables import camera_table, laser_table
+from .rig_as_tables import camera_table, covariance_table, laser_table
 from .rig_tables import RigTable
 from .validation import explain
 
@@ -56,7 +57,12 @@ def save_rig(path: Path | str, rig: Rig) -> None:
     Raises:
         DeviceError: The disk is full or cannot be written.
     """
-    _write(Path(path), tomlkit.parse(tomlkit.dumps(as_tables(rig))))
+    tables = as_tables(rig)
+    calibration = tables.pop("calibration", None)
+    document = tomlkit.parse(tomlkit.dumps(tables))
+    if calibration is not None:
+        _put_covariance(document, rig.covariance)
+    _write(Path(path), document)
 
 
 def save_camera(path: Path, camera: Camera, *, wavelength: float, record: dict[str, Any]) -> None:
@@ -110,6 +116,11 @@ def save_laser(path: Path, laser: Laser, number: int, *, record: dict[str, Any])
     )
     of_lasers[str(number)] = _lay_out(record)
     _write(path, document)
+
+
+def _put_covariance(document: tomlkit.TOMLDocument, covariance: RigCovariance) -> None:
+    calibration = document.setdefault("calibration", tomlkit.table(True))
+    calibration["covariance"] = _lay_out(covariance_table(covariance))
 
 
 def _lay_out(record: dict[str, Any]) -> dict[str, Any]:

@@ -1,11 +1,12 @@
 """The whole instrument: a camera and the lasers beside it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from ..errors import InputError
 from .camera import Camera
 from .laser import Laser
 from .pose import Pose
+from .rig_covariance import RigCovariance
 from .water import Water
 
 
@@ -22,6 +23,8 @@ class Rig:
     """What the rig is in, behind its ports; None for air."""
     vehicle_from_camera: Pose | None = None
     """The mount, where the rig sits on a vehicle whose own poses are logged."""
+    covariance: RigCovariance = field(default_factory=RigCovariance)
+    """How well its parameters are known; of none where no calibration says so."""
 
     def laser(self, number: int) -> Laser:
         """Give a laser by its number, from 0.
