@@ -10,12 +10,18 @@ from cyclopts import App
 from ..errors import InputError
 from .choices import ExtractorName, make_extractor
 from .progress import progress_bars
+from .words import print_table, say, say_verdict
 
 if TYPE_CHECKING:
     from ..calibrate import Chessboard, Margin
     from ..survey.calibrate import CameraResult, LaserResult
 
 app = App(name="calibrate", help="Find out what the camera and the laser are.")
+app.command(
+    "murkscan.cli.calibrate_mount:mount",
+    name="mount",
+    help="Find where the camera sits on the vehicle, from photos of a board that stands still.",
+)
 
 
 @app.command
@@ -37,7 +43,7 @@ def camera(
     wavelength_nm
         Wavelength of the laser [nm], for a new rig file.
     """
-    chessboard = _board(board, square_mm)
+    chessboard = parse_board(board, square_mm)
     from ..survey.calibrate import calibrate_camera_from_photos
 
     with progress_bars() as progress:
@@ -78,7 +84,7 @@ def laser(
     extractor
         The way to find the stripe.
     """
-    chessboard = _board(board, square_mm)
+    chessboard = parse_board(board, square_mm)
     margin = None if margin_mm is None else _margin(margin_mm)
     from ..survey.calibrate import calibrate_laser_from_photos
 
@@ -95,7 +101,7 @@ def laser(
     _print_laser(result, rig, laser)
 
 
-def _board(text: str, square_mm: float) -> "Chessboard":
+def parse_board(text: str, square_mm: float) -> "Chessboard":
     """Make the board of --board and --square-mm."""
     match = re.fullmatch(r"\s*(\d+)\s*[xX×]\s*(\d+)\s*", text)
     if match is None:
@@ -132,7 +138,7 @@ def _print_camera(result: "CameraResult", rig: Path) -> None:
         *found.camera.principal_point,
         *found.camera.distortion.tolist(),
     ]
-    _print_table(
+    print_table(
         "Camera",
         ("parameter", "value", "± 1σ", "unit"),
         [
@@ -142,18 +148,18 @@ def _print_camera(result: "CameraResult", rig: Path) -> None:
             )
         ],
     )
-    _print_table(
+    print_table(
         "Views",
         ("photo", "RMS [px]"),
         [(v.name, f"{rms:.3f}") for v, rms in zip(found.views, found.view_rms, strict=True)],
     )
-    _say(
+    say(
         f"RMS {found.rms:.3f} px over {len(found.views)} views; corners in "
         f"{coverage_of(found).share:.0%} of the picture."
     )
     _say_photos(result, used=len(found.views))
-    _say_verdict(str(result.verdict), result.verdict.is_good)
-    _say(f"Written to {rig}; the photos with their corners lie in {result.pictures}.")
+    say_verdict(str(result.verdict), result.verdict.is_good)
+    say(f"Written to {rig}; the photos with their corners lie in {result.pictures}.")
 
 
 def _print_laser(result: "LaserResult", rig: Path, number: int) -> None:
@@ -163,7 +169,7 @@ def _print_laser(result: "LaserResult", rig: Path, number: int) -> None:
     baseline, angle = found.laser.as_baseline_angle()
     nearest, farthest = distances_of(found)
     n, d = found.sheet.normal, found.sheet.distance
-    _print_table(
+    print_table(
         f"Laser {number}",
         ("what", "value"),
         [
@@ -175,7 +181,7 @@ def _print_laser(result: "LaserResult", rig: Path, number: int) -> None:
             ("distances", f"{nearest * 1e3:.0f} to {farthest * 1e3:.0f} mm"),
         ],
     )
-    _print_table(
+    print_table(
         "Photos",
         ("photo", "points", "RMS [mm]"),
         [
@@ -183,51 +189,24 @@ def _print_laser(result: "LaserResult", rig: Path, number: int) -> None:
             for s, rms in zip(found.stripes, found.view_rms, strict=True)
         ],
     )
-    _say(
+    say(
         f"RMS {found.rms * 1e3:.3f} mm over {found.num_inliers} of {found.num_points} stripe "
         f"points; {found.num_points - found.num_inliers} lay off the sheet and were left out."
     )
     _say_photos(result, used=len(found.stripes))
     if result.without_stripe:
-        _say(
+        say(
             f"{len(result.without_stripe)} photos show a board but no stripe on its paper; "
             "--margin-mm says how far the paper runs on."
         )
-    _say_verdict(str(result.verdict), result.verdict.is_good)
-    _say(f"Written to {rig}; the photos with their stripes lie in {result.pictures}.")
+    say_verdict(str(result.verdict), result.verdict.is_good)
+    say(f"Written to {rig}; the photos with their stripes lie in {result.pictures}.")
 
 
 def _say_photos(result: "CameraResult | LaserResult", *, used: int) -> None:
     words = f"{used} of {result.num_photos} photos used"
     if result.without_board:
         words += f"; {len(result.without_board)} without a whole board"
-    _say(words + ".")
+    say(words + ".")
     for reason in result.skipped.values():
-        _say(f"Skipped: {reason}")
-
-
-def _say_verdict(verdict: str, is_good: bool) -> None:
-    from rich import print as show
-    from rich.markup import escape
-
-    show(f"[bold {'green' if is_good else 'yellow'}]{escape(verdict)}[/]")
-
-
-def _say(words: str) -> None:
-    from rich import print as show
-    from rich.markup import escape
-
-    show(escape(words))
-
-
-def _print_table(title: str, columns: tuple[str, ...], rows: list[tuple[str, ...]]) -> None:
-    from rich import print as show
-    from rich.markup import escape
-    from rich.table import Table
-
-    table = Table(title=title, title_justify="left")
-    for column in columns:
-        table.add_column(escape(column), justify="left" if column == columns[0] else "right")
-    for row in rows:
-        table.add_row(*row)
-    show(table)
+        say(f"Skipped: {reason}")

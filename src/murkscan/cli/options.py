@@ -75,7 +75,7 @@ class MotionFlags:
             return ConstantStep(self.step_mm / 1e3, along)
         assert self.poses is not None
         mount = rig.vehicle_from_camera or Pose.identity()
-        start = _seconds(self.start_time)
+        start = read_start_time(self.start_time)
         log = load_poses(self.poses)
         return PoseLog(log, mount, start, self.time_offset_s, name=str(self.poses))
 
@@ -86,7 +86,8 @@ class MotionFlags:
             raise InputError("--along goes with --speed-mm-s or --step-mm; leave it out.")
 
 
-def _seconds(text: str) -> float:
+def read_start_time(text: str) -> float:
+    """Read --start-time [s]: seconds, or ISO 8601, in UTC unless it says otherwise."""
     from datetime import UTC, datetime
 
     try:

@@ -8,6 +8,7 @@ from ..types.arrays import Vector
 from ..types.camera import Camera
 from ..types.laser import Fan, Laser
 from ..types.port import FlatPort, Port
+from ..types.pose import Pose
 from ..types.rig import Rig
 from ..types.rig_covariance import RigCovariance
 from ..types.water import Water
@@ -24,10 +25,7 @@ def as_tables(rig: Rig) -> dict[str, Any]:
     if rig.water is not None:
         tables["water"] = _water_table(rig.water)
     if rig.vehicle_from_camera is not None:
-        tables["mount"] = {
-            "translation_mm": (rig.vehicle_from_camera.translation * 1e3).tolist(),
-            "quaternion_wxyz": rig.vehicle_from_camera.as_quaternion()[0].tolist(),
-        }
+        tables["mount"] = mount_table(rig.vehicle_from_camera)
     if rig.covariance.names:
         tables["calibration"] = {"covariance": covariance_table(rig.covariance)}
     return tables
@@ -40,6 +38,14 @@ def covariance_table(covariance: RigCovariance) -> dict[str, Any]:
         "units": list(covariance.units),
         # All digits: of parameters that nearly vary as one, little is left but the last.
         "matrix": covariance.matrix.tolist(),
+    }
+
+
+def mount_table(mount: Pose) -> dict[str, Any]:
+    """Give [mount]."""
+    return {
+        "translation_mm": (mount.translation * 1e3).tolist(),
+        "quaternion_wxyz": mount.as_quaternion()[0].tolist(),
     }
 
 

@@ -9,11 +9,12 @@ from pydantic import ValidationError
 from ..errors import FormatError, InputError
 from ..types.camera import Camera
 from ..types.laser import Laser
+from ..types.pose import Pose
 from ..types.rig import Rig
 from ..types.rig_covariance import RigCovariance
 from .atomic import replacing
 from .rig_as_tables import as_tables as as_tables
-from .rig_as_tables import camera_table, covariance_table, laser_table
+from .rig_as_tables import camera_table, covariance_table, laser_table, mount_table
 from .rig_tables import RigTable
 from .validation import explain
 
@@ -115,6 +116,27 @@ def save_laser(path: Path, laser: Laser, number: int, *, record: dict[str, Any])
         "laser", tomlkit.table(True)
     )
     of_lasers[str(number)] = _lay_out(record)
+    _write(path, document)
+
+
+def save_mount(
+    path: Path, mount: Pose, covariance: RigCovariance, *, record: dict[str, Any]
+) -> None:
+    """Create or replace [mount] and the covariance; all else of the file stays.
+
+    Args:
+        path: The rig file.
+        mount: vehicle_from_camera.
+        covariance: Of all of the rig, the mount among it.
+        record: What [calibration.mount] shall say: date, views, residuals.
+
+    Raises:
+        FormatError: The file is no rig file.
+    """
+    document = _read(path)
+    document.setdefault("mount", tomlkit.table()).update(mount_table(mount))
+    _put_covariance(document, covariance)
+    document["calibration"]["mount"] = _lay_out(record)
     _write(path, document)
 
 
