@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from murkscan.errors import FormatError
-from murkscan.io.rig_toml import as_tables, load_rig, save_camera, save_rig
+from murkscan.io.rig_toml import as_tables, load_rig, save_calibration, save_rig
 from murkscan.types.camera import Camera
 from murkscan.types.laser import Fan
 from murkscan.types.port import DomePort, FlatPort, Layer
+from murkscan.types.rig import Rig
 
 RIG = """format = 1
 
@@ -94,7 +95,7 @@ def test_a_rig_with_windows_there_and_back_is_the_same(file, tmp_path, port):
 
 def test_a_new_camera_keeps_its_port(file):
     camera = Camera((720, 576), (600.0, 600.0), (360.0, 288.0))
-    save_camera(file, camera, wavelength=532e-9, record={})
+    save_calibration(file, Rig(camera), ["camera"], record={})
     assert "# acrylic" in file.read_text()
     assert load_rig(file).camera.focal_length == (600.0, 600.0)
     assert load_rig(file).camera.port.distance == 0.03

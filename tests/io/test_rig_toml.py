@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from murkscan.errors import FormatError, InputError
-from murkscan.io.rig_toml import as_tables, load_rig, parse_rig, save_camera, save_laser, save_rig
+from murkscan.io.rig_toml import as_tables, load_rig, parse_rig, save_calibration, save_rig
 from murkscan.types.camera import Camera
 from murkscan.types.laser import Laser
 from murkscan.types.plane import Plane
+from murkscan.types.rig import Rig
 
 RIG = """# our first rig
 format = 1
@@ -55,7 +56,7 @@ def test_a_rig_there_and_back_is_the_same(file, tmp_path):
 
 def test_a_new_camera_leaves_the_rest_and_its_comments_alone(file):
     camera = Camera((640, 480), (600.0, 601.0), (320.0, 240.0), np.array([0.1, 0, 0, 0, 0]))
-    save_camera(file, camera, wavelength=532e-9, record={"views": 20})
+    save_calibration(file, Rig(camera), ["camera"], record={"views": 20})
     text = file.read_text()
     for comment in ("# our first rig", "# the cheap one", "# screwed on the frame"):
         assert comment in text
@@ -68,18 +69,18 @@ def test_a_new_camera_leaves_the_rest_and_its_comments_alone(file):
 def test_a_camera_makes_a_rig_file_where_there_is_none(tmp_path):
     path = tmp_path / "new" / "rig.toml"
     camera = Camera((720, 576), (554.0, 554.8), (359.5, 287.5))
-    save_camera(path, camera, wavelength=532e-9, record={})
+    save_calibration(path, Rig(camera), ["camera"], record={})
     assert load_rig(path).lasers == ()
     assert load_rig(path).wavelength == pytest.approx(532e-9)
 
 
 def test_a_laser_is_replaced_or_added_but_leaves_no_gap(file):
     laser = Laser.from_sheet(Plane(np.array([0.0, 0.6, -0.8]), 0.1))
-    save_laser(file, laser, 1, record={})
-    save_laser(file, laser, 0, record={"views": 30})
+    save_calibration(file, load_rig(file), ["laser", "1"], record={}, lasers={1: laser})
+    save_calibration(file, load_rig(file), ["laser", "0"], record={"views": 30}, lasers={0: laser})
     assert [laser.axis for laser in load_rig(file).lasers] == ["y", "y"]
     with pytest.raises(InputError, match="--laser 2"):
-        save_laser(file, laser, 3, record={})
+        save_calibration(file, load_rig(file), ["laser", "3"], record={}, lasers={3: laser})
 
 
 @pytest.mark.parametrize(
@@ -115,5 +116,5 @@ def test_a_camera_is_not_written_into_a_file_that_is_no_rig(tmp_path):
     path.write_text('title = "not a rig"\n')
     camera = Camera((720, 576), (554.0, 554.8), (359.5, 287.5))
     with pytest.raises(FormatError, match="title"):
-        save_camera(path, camera, wavelength=532e-9, record={})
+        save_calibration(path, Rig(camera), ["camera"], record={})
     assert path.read_text() == 'title = "not a rig"\n'

@@ -11,9 +11,14 @@ from ..errors import Degenerate, InputError, NotEnoughData
 from ..types.arrays import Pixels, Points, Scalars
 from ..types.camera import Camera
 from ..types.pose import Pose
+from ..types.rig import Rig
+from .adjust import Adjustment, adjust
 from .board import Chessboard
+from .parameters import INTRINSICS
+from .sighting import Sighting
 from .tilt import refuse_parallel_boards
 from .view import BoardView, as_opencv
+from .worth import Worth
 
 PARAMETERS = ("fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3")
 """Names of a camera's parameters, in the order of `CameraCalibration.covariance`."""
@@ -25,12 +30,12 @@ _MAX_FOCAL_SIGMA = 0.05
 On simulated boards healthy sets stay below 0.03, even four views, and sets of parallel boards lie
 between 0.03 and many times 1; those that slip under are caught by the tilt.
 """
+_MAX_SIGMA_WITHOUT = 0.1
+"""The same for what is left without any one view."""
 _OUTLIER = 3.0
 """A view whose RMS is so many times the median is left out."""
 _MAX_OUTLIERS = 0.25
 """Share of the views that may be left out."""
-_MAX_FOLDS = 24
-"""Jackknife groups at most; more would only take longer."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,10 +51,16 @@ class CameraCalibration:
     residuals: tuple[Pixels, ...]
     """Corner as found minus corner as projected, of each view [px]."""
     covariance: Float[np.ndarray, "9 9"]
-    """Of `PARAMETERS`: how they vary together is the jackknife's; how much each does is OpenCV's
-    or the jackknife's, the larger. From fewer than 10 views it is singular."""
+    """Of `PARAMETERS`, told from the residuals and from how much the views disagree."""
     left_out: tuple[BoardView, ...]
     """Views left out, since they fit far worse than the others."""
+    adjustment: Adjustment
+    """The same with what hangs on one view alone, and the rig that carries it."""
+
+    @property
+    def rig(self) -> Rig:
+        """The camera with its covariance, as a rig in air."""
+        return self.adjustment.rig
 
     @property
     def sigma(self) -> Scalars:
@@ -94,18 +105,22 @@ def calibrate_camera(
     _check_views(used, len(views), board)
     refuse_parallel_boards(used, board, size)
     fit, left_out = _fit_without_outliers(used, board, size)
-    covariance = _widen(_jackknife_covariance(fit.views, board, size), fit.sigma)
-    sigma = np.sqrt(np.diag(covariance))
-    if sigma[0] > _MAX_FOCAL_SIGMA * fit.camera.focal_length[0]:
+    found = adjust(Rig(fit.camera), fit.sightings(board), INTRINSICS)
+    worth = found.worth
+    camera, covariance = found.rig.camera, worth.covariance.matrix
+    sigma = float(np.sqrt(covariance[0, 0]))
+    if sigma > _MAX_FOCAL_SIGMA * camera.focal_length[0]:
         raise Degenerate(
             f"The {len(fit.views)} views do not determine the focal length: with RMS "
-            f"{fit.rms:.2f} px it comes out as {fit.camera.focal_length[0]:.0f} ± {sigma[0]:.0f} "
-            "px. Add views with the board tilted by 20 to 40 degrees to the left, the right, "
-            "the top and the bottom, in different parts of the picture."
+            f"{found.corner_sigma:.2f} px it comes out as {camera.focal_length[0]:.0f} ± "
+            f"{sigma:.0f} px. Add views with the board tilted by 20 to 40 degrees to the left, the "
+            "right, the top and the bottom, in different parts of the picture."
         )
+    _refuse_one_photo(worth, fit.views, camera.focal_length[0])
     return CameraCalibration(
-        fit.camera, fit.views, fit.camera_from_boards, fit.residuals, covariance, left_out
-    )
+        camera, fit.views, found.camera_from_boards, found.corner_residuals, covariance, left_out,
+        found,
+    )  # fmt: skip
 
 
 def locate_board(view: BoardView, board: Chessboard, camera: Camera) -> tuple[Pose, Pixels]:
@@ -119,6 +134,20 @@ def locate_board(view: BoardView, board: Chessboard, camera: Camera) -> tuple[Po
     )
     camera_from_board = _as_pose(turn, shift)
     return camera_from_board, view.corners - _project(camera, turn, shift, flat)
+
+
+def _refuse_one_photo(worth: Worth, views: Sequence[BoardView], focal_length: float) -> None:
+    """Refuse a focal length that one view alone tells, such as the one tilted among parallel."""
+    worst = int(np.argmax(worth.sigma_without_photo[:, 0]))
+    sigma = float(worth.sigma_without_photo[worst, 0])
+    if sigma <= _MAX_SIGMA_WITHOUT * focal_length:
+        return
+    raise Degenerate(
+        f"The {len(views)} views do not determine the focal length: it hangs on "
+        f"{views[worst].name} alone, without which it would be {focal_length:.0f} ± {sigma:.0f} "
+        "px. Add views with the board tilted by 20 to 40 degrees to the left, the right, the top "
+        "and the bottom."
+    )
 
 
 def _check_views(used: Sequence[BoardView], num_tried: int, board: Chessboard) -> None:
@@ -135,9 +164,26 @@ def _check_views(used: Sequence[BoardView], num_tried: int, board: Chessboard) -
         )
 
 
+@dataclass(frozen=True, eq=False)
+class _PlainFit:
+    """A camera as OpenCV fits it, all corners alike: where the adjustment starts."""
+
+    camera: Camera
+    views: tuple[BoardView, ...]
+    camera_from_boards: tuple[Pose, ...]
+    view_rms: tuple[float, ...]
+
+    def sightings(self, board: Chessboard) -> list[Sighting]:
+        flat = board.points()
+        return [
+            Sighting(view.name, view.corners, flat, pose)
+            for view, pose in zip(self.views, self.camera_from_boards, strict=True)
+        ]
+
+
 def _fit_without_outliers(
     views: Sequence[BoardView], board: Chessboard, size: tuple[int, int]
-) -> tuple[CameraCalibration, tuple[BoardView, ...]]:
+) -> tuple[_PlainFit, tuple[BoardView, ...]]:
     """Fit, and fit again without the worst view while that stands out from the others."""
     kept, left_out = list(views), list[BoardView]()
     may_leave_out = min(int(_MAX_OUTLIERS * len(views)), len(views) - MIN_VIEWS)
@@ -151,9 +197,9 @@ def _fit_without_outliers(
     return fit, tuple(left_out)
 
 
-def _fit(views: Sequence[BoardView], board: Chessboard, size: tuple[int, int]) -> CameraCalibration:
+def _fit(views: Sequence[BoardView], board: Chessboard, size: tuple[int, int]) -> _PlainFit:
     flat = board.points()
-    _, matrix, distortion, turns, shifts, sigma, _, _ = cv2.calibrateCameraExtended(
+    _, matrix, distortion, turns, shifts = cv2.calibrateCamera(
         *as_opencv(views, flat), size, None, None
     )
     camera = Camera(
@@ -163,42 +209,11 @@ def _fit(views: Sequence[BoardView], board: Chessboard, size: tuple[int, int]) -
         distortion=np.ravel(distortion)[:5].astype(np.float64),
     )
     poses = tuple(_as_pose(turn, shift) for turn, shift in zip(turns, shifts, strict=True))
-    residuals = tuple(
-        view.corners - _project(camera, turn, shift, flat)
+    rms = tuple(
+        _rms(view.corners - _project(camera, turn, shift, flat))
         for view, turn, shift in zip(views, turns, shifts, strict=True)
     )
-    formal = np.ravel(sigma)[: len(PARAMETERS)].astype(np.float64)
-    return CameraCalibration(camera, tuple(views), poses, residuals, np.diag(formal**2), ())
-
-
-def _jackknife_covariance(
-    views: Sequence[BoardView], board: Chessboard, size: tuple[int, int]
-) -> Float[np.ndarray, "9 9"]:
-    """Give the covariance of the parameters from how they change without some views.
-
-    OpenCV's own takes the corners of a view as independent, which those of a board that is not
-    quite flat are not.
-    """
-    flat = board.points()
-    num_folds = min(len(views), _MAX_FOLDS)
-    estimates = []
-    for fold in range(num_folds):
-        rest = [view for i, view in enumerate(views) if i % num_folds != fold]
-        _, matrix, distortion, _, _ = cv2.calibrateCamera(*as_opencv(rest, flat), size, None, None)
-        lens = np.ravel(distortion)[:5]
-        estimates.append([matrix[0, 0], matrix[1, 1], matrix[0, 2], matrix[1, 2], *lens])
-    around = np.array(estimates) - np.mean(estimates, axis=0)
-    return (num_folds - 1) / num_folds * around.T @ around
-
-
-def _widen(covariance: Float[np.ndarray, "n n"], least: Scalars) -> Float[np.ndarray, "n n"]:
-    """Raise standard deviations to at least these; the correlations stay."""
-    sigma = np.sqrt(np.diag(covariance))
-    wider = np.maximum(sigma, least)
-    scale = np.divide(wider, sigma, out=np.zeros_like(sigma), where=sigma > 0)
-    widened = covariance * np.outer(scale, scale)
-    np.fill_diagonal(widened, wider**2)
-    return widened
+    return _PlainFit(camera, tuple(views), poses, rms)
 
 
 def _project(camera: Camera, turn: np.ndarray, shift: np.ndarray, points: Points) -> Pixels:

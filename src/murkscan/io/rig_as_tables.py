@@ -23,7 +23,7 @@ def as_tables(rig: Rig) -> dict[str, Any]:
         "laser": [laser_table(laser) for laser in rig.lasers],
     }
     if rig.water is not None:
-        tables["water"] = _water_table(rig.water)
+        tables["water"] = water_table(rig.water)
     if rig.vehicle_from_camera is not None:
         tables["mount"] = mount_table(rig.vehicle_from_camera)
     if rig.covariance.names:
@@ -109,7 +109,8 @@ def _port_table(port: Port, origin: Vector) -> dict[str, Any]:
     return {"kind": "layers"} | face | {"layer": layers}
 
 
-def _water_table(water: Water) -> dict[str, Any]:
+def water_table(water: Water) -> dict[str, Any]:
+    """Give [water]."""
     if water.index is not None:
         return {"index": water.index}
     return {

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, PositiveFloat
@@ -188,6 +188,8 @@ class _CovarianceTable(_Table):
     parameters: list[str]
     units: list[str] = []
     matrix: list[list[FiniteFloat]]
+    of: str | None = None
+    water: dict[str, Any] | str | None = None
 
     def as_covariance(self) -> RigCovariance:
         count = len(self.parameters)

@@ -1,5 +1,6 @@
 """rig.toml: what the instrument is. Users write it by hand, `calibrate` writes into it."""
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -7,14 +8,14 @@ import tomlkit
 from pydantic import ValidationError
 
 from ..errors import FormatError, InputError
-from ..types.camera import Camera
 from ..types.laser import Laser
 from ..types.pose import Pose
 from ..types.rig import Rig
 from ..types.rig_covariance import RigCovariance
 from .atomic import replacing
 from .rig_as_tables import as_tables as as_tables
-from .rig_as_tables import camera_table, covariance_table, laser_table, mount_table
+from .rig_as_tables import camera_table, covariance_table, laser_table, mount_table, water_table
+from .rig_stale import drop_stale, fingerprint, water_of
 from .rig_tables import RigTable
 from .validation import explain
 
@@ -45,7 +46,11 @@ def parse_rig(tables: dict[str, Any], *, name: str) -> Rig:
         FormatError: A key is unknown, missing or out of range; the message names the key.
     """
     try:
-        return RigTable.model_validate(tables).as_rig()
+        table = RigTable.model_validate(tables)
+        covariance = table.calibration.covariance
+        if covariance is None:
+            return table.as_rig()
+        return drop_stale(table.as_rig(), of=covariance.of, water=covariance.water)
     except ValidationError as error:
         raise FormatError(f"{name}: {explain(error)}") from error
     except InputError as error:
@@ -66,56 +71,43 @@ def save_rig(path: Path | str, rig: Rig) -> None:
     _write(Path(path), document)
 
 
-def save_camera(path: Path, camera: Camera, *, wavelength: float, record: dict[str, Any]) -> None:
-    """Create or replace [camera]; all else of the file, comments too, stays.
+def save_calibration(
+    path: Path,
+    rig: Rig,
+    step: Sequence[str],
+    *,
+    record: dict[str, Any],
+    lasers: Mapping[int, Laser] | None = None,
+    keep_water: bool = True,
+) -> None:
+    """Write what a calibration found: [camera], some lasers and the covariance.
+
+    All else of the file stays, comments too.
 
     Args:
         path: The rig file; made where it is missing.
-        camera: The new camera.
-        wavelength: Written only where the file is new or has none [m].
-        record: What [calibration.camera] shall say: date, views, residuals.
+        rig: The rig with its covariance.
+        step: Where in [calibration] the record goes, such as ("laser", "0").
+        record: What it shall say: date, views, residuals.
+        lasers: Lasers that are new or have changed, by number.
+        keep_water: Whether [water] stays as it is.
 
     Raises:
         FormatError: The file is there but is no rig file.
+        InputError: The number of a laser leaves a gap.
     """
     document = _read(path) if path.exists() else tomlkit.parse("format = 1\n")
-    document.setdefault("wavelength_nm", round(wavelength * 1e9, 3))
-    document.setdefault("camera", tomlkit.table()).update(camera_table(camera))
-    document.setdefault("calibration", tomlkit.table(True))["camera"] = _lay_out(record)
-    _write(path, document)
-
-
-def save_laser(path: Path, laser: Laser, number: int, *, record: dict[str, Any]) -> None:
-    """Replace laser `number`, or add it as the next one; all else of the file stays.
-
-    Args:
-        path: The rig file.
-        laser: The new laser.
-        number: Its number, at most the count of those that are there.
-        record: What [calibration.laser.N] shall say: date, views, residuals.
-
-    Raises:
-        FormatError: The file is no rig file.
-        InputError: The number leaves a gap.
-    """
-    document = _read(path)
-    lasers = document.setdefault("laser", tomlkit.aot())
-    if number > len(lasers):
-        raise InputError(
-            f"{path} has {len(lasers)} lasers, so the next one is --laser {len(lasers)}, "
-            f"not {number}."
-        )
-    table = tomlkit.table()
-    table.update(laser_table(laser))
-    table.add(tomlkit.nl())
-    if number == len(lasers):
-        lasers.append(table)
-    else:
-        lasers[number] = table
-    of_lasers = document.setdefault("calibration", tomlkit.table(True)).setdefault(
-        "laser", tomlkit.table(True)
-    )
-    of_lasers[str(number)] = _lay_out(record)
+    document.setdefault("wavelength_nm", round(rig.wavelength * 1e9, 3))
+    _update(document.setdefault("camera", tomlkit.table()), camera_table(rig.camera))
+    for number, laser in sorted((lasers or {}).items()):
+        _put_laser(document, laser, number, path)
+    if not keep_water and rig.water is not None:
+        document["water"] = water_table(rig.water)
+    _put_covariance(document, rig.covariance)
+    table = document["calibration"]
+    for word in step[:-1]:
+        table = table.setdefault(word, tomlkit.table(True))
+    table[step[-1]] = _lay_out(record)
     _write(path, document)
 
 
@@ -140,9 +132,39 @@ def save_mount(
     _write(path, document)
 
 
+def _update(table: Any, values: dict[str, Any]) -> None:
+    """Put values into a table; tables within it are kept, with their comments."""
+    for key, value in values.items():
+        if isinstance(value, dict) and isinstance(table.get(key), dict):
+            _update(table[key], value)
+        else:
+            table[key] = value
+
+
+def _put_laser(document: tomlkit.TOMLDocument, laser: Laser, number: int, path: Path) -> None:
+    """Replace laser `number`, or add it as the next one."""
+    lasers = document.setdefault("laser", tomlkit.aot())
+    if number > len(lasers):
+        raise InputError(
+            f"{path} has {len(lasers)} lasers, so the next one is --laser {len(lasers)}, "
+            f"not {number}."
+        )
+    table = tomlkit.table()
+    table.update(laser_table(laser))
+    table.add(tomlkit.nl())
+    if number == len(lasers):
+        lasers.append(table)
+    else:
+        lasers[number] = table
+
+
 def _put_covariance(document: tomlkit.TOMLDocument, covariance: RigCovariance) -> None:
+    """Replace the covariance; it says which rig and which water it belongs to."""
     calibration = document.setdefault("calibration", tomlkit.table(True))
-    calibration["covariance"] = _lay_out(covariance_table(covariance))
+    calibration.pop("covariance", None)
+    rig = parse_rig(document.unwrap(), name="the new rig file")
+    belongs = {"of": fingerprint(rig, covariance.names), "water": water_of(rig)}
+    calibration["covariance"] = _lay_out(covariance_table(covariance) | belongs)
 
 
 def _lay_out(record: dict[str, Any]) -> dict[str, Any]:

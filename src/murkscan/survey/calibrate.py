@@ -1,7 +1,7 @@
 """Calibrate a camera and its lasers from photos: find, fit, judge, save, draw."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -12,7 +12,7 @@ from ..calibrate.sheet import LaserCalibration, calibrate_laser
 from ..calibrate.verdict import CalibrationVerdict, judge_camera, judge_laser
 from ..errors import EstimationError, InputError, MissingResult
 from ..extract import AbstractExtractor, GrayGravity
-from ..io.rig_toml import parse_rig, read_tables, save_camera, save_laser
+from ..io.rig_toml import parse_rig, read_tables, save_calibration
 from ..types.rig import Rig
 from .board_photos import BoardPhotos
 from .board_stripes import StripeFinder
@@ -95,7 +95,8 @@ def calibrate_camera_from_photos(
         raise type(error)(f"{error} The photos with their corners lie in {folder}.") from error
     verdict = judge_camera(calibration)
     record = record_setting(board, len(views), tables) | record_camera(calibration, verdict)
-    save_camera(rig_path, calibration.camera, wavelength=wavelength, record=record)
+    found = replace(calibration.rig, wavelength=wavelength)
+    save_calibration(rig_path, found, ["camera"], record=record)
     draw(calibration=calibration)
     without = tuple(view.name for view in views if not view.is_found)
     return CameraResult(calibration, verdict, len(views), without, photos.skipped, folder)
@@ -148,7 +149,9 @@ def calibrate_laser_from_photos(
         raise type(error)(f"{error} The photos with their stripes lie in {folder}.") from error
     verdict = judge_laser(calibration)
     record = record_setting(board, len(views), tables) | record_laser(calibration, verdict)
-    save_laser(rig_path, calibration.laser, laser, record=record)
+    save_calibration(
+        rig_path, rig, ["laser", str(laser)], record=record, lasers={laser: calibration.laser}
+    )
     draw(calibration=calibration)
     return LaserResult(
         calibration=calibration,

@@ -1,0 +1,220 @@
+"""One adjustment of everything that boards and stripes tell, with what it is worth."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+
+from ..errors import InputError, NotConverged
+from ..types.arrays import Pixels, Scalars
+from ..types.pose import Pose
+from ..types.rig import Rig
+from ..types.rig_covariance import RigCovariance
+from .linearise import Linearised, Rows, State, linearise, residuals_of
+from .normal_equations import NormalEquations
+from .observed import Boards, Observed
+from .sighting import Sighting
+from .weigh import Weights, weigh
+from .worth import Worth, assess
+
+_MAX_STEPS, _MAX_TRIALS = 60, 12
+_SETTLED = 1e-6
+"""Fall of the sum of squares, in variances, below which all parameters rest to 0.001 sigma."""
+_NEGLIGIBLE = 1e-9
+"""The same as a share of the sum."""
+
+
+@dataclass(frozen=True, eq=False)
+class Adjustment:
+    """A rig that explains all sightings, and what it is worth."""
+
+    rig: Rig
+    """The rig, with the covariance of all parameters that were estimated or considered."""
+    names: tuple[str, ...]
+    """The parameters that were estimated."""
+    prior: RigCovariance
+    """What was known of them beforehand."""
+    camera_from_boards: tuple[Pose, ...]
+    """Where the board was in each photo."""
+    corner_residuals: tuple[Pixels, ...]
+    """Corner as found minus corner as projected, of each photo [px]."""
+    stripe_residuals: tuple[Float[np.ndarray, "..."], ...]
+    """How far each stripe point is off across the stripe, of each photo [px]."""
+    corner_shares: tuple[Float[np.ndarray, "..."], ...]
+    """What each corner counts: 1, or less where it stands out."""
+    stripe_shares: tuple[Float[np.ndarray, "..."], ...]
+    """The same for stripe points."""
+    corner_sigma: float
+    """Standard deviation of a corner along u or v, told from the residuals [px]."""
+    stripe_sigma: float
+    """The same of a stripe point, across the stripe [px]."""
+    worth: Worth
+    """What the photos tell of the parameters, one by one and together."""
+
+
+def adjust(
+    rig: Rig,
+    sightings: Sequence[Sighting],
+    names: Sequence[str],
+    *,
+    prior: RigCovariance | None = None,
+    considered: RigCovariance | None = None,
+) -> Adjustment:
+    """Adjust parameters of a rig, and the place of every board, to what the photos show.
+
+    Each of the rig's parameters is free (among `names`), known beforehand to some deviation (among
+    `names` and in the prior, whose mean is the rig's present value), or fixed. Gross outliers are
+    let go; noise is told from the residuals. Where whole photos disagree more than their points
+    do, the covariance is widened by as much.
+
+    Args:
+        rig: The rig to start from; its water is what the photos were taken in.
+        sightings: What the photos show.
+        names: The parameters to estimate, as `perturb_rig` names them.
+        prior: What is known of some of them beforehand.
+        considered: Parameters that are not estimated but not exact either: their errors go into
+            the covariance.
+
+    Raises:
+        InputError: A board's points cannot be seen by the rig as it starts.
+        NotConverged: No end after 60 steps.
+
+    References:
+        Triggs et al., Bundle adjustment: a modern synthesis, 2000; Marquardt, An algorithm for
+        least-squares estimation of nonlinear parameters, 1963.
+    """
+    prior, considered = prior or RigCovariance(), considered or RigCovariance()
+    observed = Observed.of(sightings)
+    names = tuple(names)
+    state = State(rig, names, np.zeros(len(names)), Boards.of(sightings))
+    information = invert(prior.select([n for n in names if n in prior.names]), names)
+    state = _descend(state, observed, information)
+    all_names = (*names, *(name for name in considered.names if name not in names))
+    end = state.rebase(all_names)
+    found = linearise(end, observed, _scale(end, observed))
+    weights = _weigh(found, end)
+    equations = NormalEquations.of(found, weights.roots, len(sightings))
+    worth = assess(equations, all_names, information, considered)
+    return _sum_up(end, found, weights, worth, sightings, names, prior)
+
+
+def invert(covariance: RigCovariance, names: Sequence[str]) -> Float[np.ndarray, "k k"]:
+    """Give the inverse of a covariance, with zeros for names that it does not have."""
+    information = np.zeros((len(names), len(names)))
+    places = [i for i, name in enumerate(names) if name in covariance.names]
+    if not places:
+        return information
+    known = covariance.select([names[i] for i in places])
+    sigma = known.sigma
+    if not (sigma > 0).all():
+        raise InputError(
+            "A parameter with a deviation of 0 is fixed: leave it out of those to estimate, "
+            f"{', '.join(known.names)}."
+        )
+    inverse = np.linalg.pinv(known.correlation, rcond=1e-12, hermitian=True)
+    information[np.ix_(places, places)] = inverse / np.outer(sigma, sigma)
+    return information
+
+
+def _descend(state: State, observed: Observed, information: Float[np.ndarray, "k k"]) -> State:
+    """Step downhill until nothing moves any more."""
+    damping = 1e-4
+    for _ in range(_MAX_STEPS):
+        scale = _scale(state, observed)
+        found = linearise(state, observed, scale)
+        if not np.isfinite(found.residuals).all():
+            raise InputError(_out_of_sight(state))
+        weights = _weigh(found, state)
+        equations = NormalEquations.of(found, weights.roots, len(state.boards.translations))
+        pull = information @ state.changes
+        now = _cost(found.residuals, weights, state, information)
+        for _ in range(_MAX_TRIALS):
+            change, moves = equations.damp(damping).solve(information, pull)
+            new, then = _try(state, change, moves, observed, scale, weights, information)
+            if then <= now:
+                break
+            damping *= 10
+        else:
+            return state
+        state, damping = new, max(damping / 10, 1e-9)
+        if now - then < _SETTLED + _NEGLIGIBLE * now:
+            return state
+    raise NotConverged(
+        f"The adjustment of {', '.join(state.names)} came to no end in {_MAX_STEPS} steps. Fix a "
+        "parameter, or give a value with a deviation for one that the photos do not determine."
+    )
+
+
+def _try(
+    state: State,
+    change: Scalars,
+    moves: Float[np.ndarray, "p 6"],
+    observed: Observed,
+    scale: Rows,
+    weights: Weights,
+    information: Float[np.ndarray, "k k"],
+) -> tuple[State, float]:
+    """Make a step; a rig that cannot be costs infinitely much."""
+    new = state.move(change, moves)
+    try:
+        residuals = residuals_of(new, observed, scale)
+    except InputError:
+        return state, np.inf
+    cost = _cost(residuals, weights, new, information)
+    return new, cost if np.isfinite(cost) else np.inf
+
+
+def _cost(
+    residuals: Rows, weights: Weights, state: State, information: Float[np.ndarray, "k k"]
+) -> float:
+    by_prior = state.changes @ information @ state.changes
+    return float(np.sum((weights.roots * residuals) ** 2) + by_prior)
+
+
+def _scale(state: State, observed: Observed) -> Rows:
+    return observed.pixels_to_sheet(state.rig, state.boards)
+
+
+def _weigh(found: Linearised, state: State) -> Weights:
+    return weigh(
+        found,
+        num_photos=len(state.boards.translations),
+        num_laser_parameters=sum(name.startswith("laser[") for name in state.names),
+    )
+
+
+def _out_of_sight(state: State) -> str:
+    nearest = float(state.boards.translations[:, 2].min())
+    return (
+        "Some points of the boards cannot be seen through the rig's port as it stands; the nearest "
+        f"board is {nearest * 1e3:.0f} mm away. Check that the port's measures in the rig file and "
+        "the board's squares are in millimetres."
+    )
+
+
+def _sum_up(
+    end: State,
+    found: Linearised,
+    weights: Weights,
+    worth: Worth,
+    sightings: Sequence[Sighting],
+    names: tuple[str, ...],
+    prior: RigCovariance,
+) -> Adjustment:
+    split = found.num_corner_rows
+    corner_ends = np.cumsum([len(s.corners) for s in sightings])[:-1]
+    stripe_ends = np.cumsum([len(s.stripe) for s in sightings])[:-1]
+    return Adjustment(
+        rig=replace(end.rig, covariance=worth.covariance),
+        names=names,
+        prior=prior,
+        camera_from_boards=end.boards.as_poses(),
+        corner_residuals=tuple(np.split(-found.residuals[:split].reshape(-1, 2), corner_ends)),
+        stripe_residuals=tuple(np.split(found.residuals[split:], stripe_ends)),
+        corner_shares=tuple(np.split(weights.shares[:split:2], corner_ends)),
+        stripe_shares=tuple(np.split(weights.shares[split:], stripe_ends)),
+        corner_sigma=weights.corner_sigma,
+        stripe_sigma=weights.stripe_sigma,
+        worth=worth,
+    )
