@@ -109,7 +109,7 @@ def _fit_spread(medium: Medium, emission: Emission) -> Spread:
     return Spread(WIDTHS, medium.scattering, shares)
 
 
-def _fit_gaussians(density: Scalars) -> Scalars:
+def _fit_gaussians(density: Values) -> Scalars:
     """Fit a density, as it is looked at, by Gaussians, evenly well in proportion."""
     variances = WIDTHS**2 + blur_of(_RADII)[:, None]
     bells = np.exp(-0.5 * _RADII[:, None] ** 2 / variances) / (2 * np.pi * variances)
