@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..types.arrays import Pixels
 from .camera import CameraCalibration
 
 _CELLS = 10
@@ -24,7 +25,12 @@ class Coverage:
 def coverage_of(calibration: CameraCalibration) -> Coverage:
     """Tell how much of the picture the corners of all views cover."""
     corners = np.concatenate([view.corners for view in calibration.views])
-    width, height = calibration.camera.size
+    return cover(corners, calibration.camera.size)
+
+
+def cover(corners: Pixels, size: tuple[int, int]) -> Coverage:
+    """Tell how much of a picture of this width and height corners cover."""
+    width, height = size
     column, row = (corners / [width, height] * _CELLS).astype(int).clip(0, _CELLS - 1).T
     seen = np.zeros((_CELLS, _CELLS))
     seen[row, column] = 1.0

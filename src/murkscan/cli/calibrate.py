@@ -18,6 +18,11 @@ if TYPE_CHECKING:
 
 app = App(name="calibrate", help="Find out what the camera and the laser are.")
 app.command(
+    "murkscan.cli.calibrate_port:port",
+    name="port",
+    help="Find how the camera's port stands, from photos of a board under water.",
+)
+app.command(
     "murkscan.cli.calibrate_mount:mount",
     name="mount",
     help="Find where the camera sits on the vehicle, from photos of a board that stands still.",

@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -10,12 +9,12 @@ from ..types.rig import Rig
 from .rig_as_tables import camera_table, laser_table, water_table
 
 
-def fingerprint(rig: Rig, names: Sequence[str]) -> str:
-    """Give a short word that changes when the camera, or a laser among the names, changes."""
-    numbers = {int(name[6:].split("]")[0]) for name in names if name.startswith("laser[")}
-    lasers = [laser_table(laser) for i, laser in enumerate(rig.lasers) if i in numbers]
-    text = json.dumps([camera_table(rig.camera), sorted(numbers), lasers], sort_keys=True)
-    return hashlib.sha256(text.encode()).hexdigest()[:12]
+def fingerprints(rig: Rig) -> dict[str, str]:
+    """Give a short word for each part of a rig, which changes when that part is edited."""
+    camera = camera_table(rig.camera)
+    parts = {"port": camera.pop("port", None), "camera": camera}
+    parts |= {f"laser[{i}]": laser_table(laser) for i, laser in enumerate(rig.lasers)}
+    return {name: _word(table) for name, table in parts.items()}
 
 
 def water_of(rig: Rig) -> dict[str, Any] | str:
@@ -23,15 +22,27 @@ def water_of(rig: Rig) -> dict[str, Any] | str:
     return "air" if rig.water is None else water_table(rig.water)
 
 
-def drop_stale(rig: Rig, *, of: str | None, water: dict[str, Any] | str | None) -> Rig:
+def drop_stale(rig: Rig, *, of: dict[str, str] | None, water: dict[str, Any] | str | None) -> Rig:
     """Drop what the covariance no longer says rightly.
 
-    All of it where the camera or a laser was edited since; the index of the water where the rig
-    went to other water. A file that does not say what its covariance is of is believed.
+    All of it where the camera was edited since; the port and the lasers behind it where the port
+    was; a laser where it was; the water's index where the rig went to other water. A file that
+    does not say what its covariance is of is believed.
     """
     covariance = rig.covariance
-    if of is not None and of != fingerprint(rig, covariance.names):
-        covariance = covariance.select([])
+    if of is not None:
+        now = fingerprints(rig)
+        edited = {part for part, word in of.items() if now.get(part) != word}
+        if "camera" in edited:
+            covariance = covariance.select([])
+        if "port" in edited:
+            edited |= {"camera.port", "laser[", "water."}
+        for part in edited:
+            covariance = covariance.without(part)
     if water is not None and water != water_of(rig):
         covariance = covariance.without("water.")
     return replace(rig, covariance=covariance)
+
+
+def _word(table: dict[str, Any] | None) -> str:
+    return hashlib.sha256(json.dumps(table, sort_keys=True).encode()).hexdigest()[:12]

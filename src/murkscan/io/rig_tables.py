@@ -188,7 +188,7 @@ class _CovarianceTable(_Table):
     parameters: list[str]
     units: list[str] = []
     matrix: list[list[FiniteFloat]]
-    of: str | None = None
+    of: dict[str, str] | None = None
     water: dict[str, Any] | str | None = None
 
     def as_covariance(self) -> RigCovariance:

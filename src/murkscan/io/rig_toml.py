@@ -15,7 +15,7 @@ from ..types.rig_covariance import RigCovariance
 from .atomic import replacing
 from .rig_as_tables import as_tables as as_tables
 from .rig_as_tables import camera_table, covariance_table, laser_table, mount_table, water_table
-from .rig_stale import drop_stale, fingerprint, water_of
+from .rig_stale import drop_stale, fingerprints, water_of
 from .rig_tables import RigTable
 from .validation import explain
 
@@ -163,7 +163,7 @@ def _put_covariance(document: tomlkit.TOMLDocument, covariance: RigCovariance) -
     calibration = document.setdefault("calibration", tomlkit.table(True))
     calibration.pop("covariance", None)
     rig = parse_rig(document.unwrap(), name="the new rig file")
-    belongs = {"of": fingerprint(rig, covariance.names), "water": water_of(rig)}
+    belongs = {"of": fingerprints(rig), "water": water_of(rig)}
     calibration["covariance"] = _lay_out(covariance_table(covariance) | belongs)
 
 

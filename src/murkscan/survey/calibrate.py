@@ -85,19 +85,21 @@ def calibrate_camera_from_photos(
         Degenerate: The photos do not determine the camera.
     """
     tables = _read_without_port(rig_path)
-    photos, folder = _open_photos(path, rig_path, "camera")
+    photos, folder = open_photos(path, rig_path, "camera")
     views, size = find_boards(photos, board, progress)
     draw = partial(draw_boards, photos, views, folder, board=board, progress=progress)
     try:
         calibration = calibrate_camera(views, board, size)
     except EstimationError as error:
-        draw(calibration=None)
+        draw(residuals={})
         raise type(error)(f"{error} The photos with their corners lie in {folder}.") from error
     verdict = judge_camera(calibration)
     record = record_setting(board, len(views), tables) | record_camera(calibration, verdict)
     found = replace(calibration.rig, wavelength=wavelength)
     save_calibration(rig_path, found, ["camera"], record=record)
-    draw(calibration=calibration)
+    residuals = zip((view.name for view in calibration.views), calibration.residuals, strict=True)
+    left_out = tuple(view.name for view in calibration.left_out)
+    draw(residuals=dict(residuals), left_out=left_out)
     without = tuple(view.name for view in views if not view.is_found)
     return CameraResult(calibration, verdict, len(views), without, photos.skipped, folder)
 
@@ -133,7 +135,7 @@ def calibrate_laser_from_photos(
     """
     tables = _read_without_port(rig_path)
     rig = _parse_calibrated(tables, rig_path, laser)
-    photos, folder = _open_photos(path, rig_path, f"laser_{laser}")
+    photos, folder = open_photos(path, rig_path, f"laser_{laser}")
     views, _ = find_boards(photos, board, progress, size=rig.camera.size)
     margin = margin or Margin(board.square, board.square, board.square, board.square)
     finder = StripeFinder(photos, views, board, margin, rig, extractor or GrayGravity())
@@ -164,7 +166,7 @@ def calibrate_laser_from_photos(
     )
 
 
-def _open_photos(path: Path, rig_path: Path, name: str) -> tuple[BoardPhotos, Path]:
+def open_photos(path: Path, rig_path: Path, name: str) -> tuple[BoardPhotos, Path]:
     """Open the photos; give them, and the folder that the drawings of this calibration go to."""
     folder = rig_path.parent / "calibrate" / name
     if path.resolve().is_relative_to(folder.resolve()):

@@ -1,16 +1,16 @@
 """The photos of a calibration with what was found drawn over them."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from ..calibrate.board import Chessboard, Margin
-from ..calibrate.camera import CameraCalibration
 from ..calibrate.drawing import draw_board, draw_stripe_on_board, project_outline
 from ..calibrate.sheet import LaserCalibration, StripeOnBoard
 from ..calibrate.view import BoardView
 from ..io.images import write_image
+from ..types.arrays import Pixels
 from ..types.camera import Camera
 from .board_photos import BoardPhotos
 from .progress import Progress
@@ -27,24 +27,22 @@ def draw_boards(
     folder: Path,
     *,
     board: Chessboard,
-    calibration: CameraCalibration | None,
+    residuals: Mapping[str, Pixels],
+    left_out: Sequence[str] = (),
     progress: Progress,
 ) -> None:
-    """Draw the corners of every photo, with residuals where there is a calibration."""
+    """Draw the corners of every photo, with residuals [px] where its name has some."""
     _clear(folder)
     none = np.zeros((0, 2))
-    used = {} if calibration is None else _number(calibration.views)
-    left_out = set() if calibration is None else {view.name for view in calibration.left_out}
     for number, (photo, view) in enumerate(zip(photos, views, strict=True)):
-        residuals, note = none, f"{view.name}: no {board} board found"
+        off, note = residuals.get(view.name, none), f"{view.name}: no {board} board found"
         if view.is_found:
             note = f"{view.name}: {board} board"
         if view.name in left_out:
             note += ", LEFT OUT: fits far worse than the others"
-        if calibration is not None and view.name in used:
-            residuals = calibration.residuals[used[view.name]]
-            note += f", RMS {calibration.view_rms[used[view.name]]:.2f} px"
-        picture = draw_board(photo.image, view, board, residuals, note)
+        if len(off):
+            note += f", RMS {np.sqrt(np.mean(np.sum(off**2, axis=1))):.2f} px"
+        picture = draw_board(photo.image, view, board, off, note)
         write_image(folder / f"{view.name}{_SUFFIX}", picture)
         progress("draw", number + 1, len(views))
 

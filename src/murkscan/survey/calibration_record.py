@@ -1,10 +1,12 @@
 """What [calibration] in the rig file says of a calibration: when, in what, on what, how good."""
 
 import datetime
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
+from ..calibrate.adjust import Adjustment
 from ..calibrate.board import Chessboard
 from ..calibrate.camera import PARAMETERS, CameraCalibration
 from ..calibrate.sheet import LaserCalibration
@@ -40,6 +42,26 @@ def record_camera(calibration: CameraCalibration, verdict: CalibrationVerdict) -
         "parameters": list(PARAMETERS),
         # Of parameters that nearly vary as one, little is left but the last digits.
         "covariance": [[_round(c, 9) for c in row] for row in calibration.covariance.tolist()],
+    }
+
+
+def record_adjustment(
+    found: Adjustment, left_out: Sequence[str], verdict: CalibrationVerdict
+) -> dict[str, Any]:
+    """Record the photos of a joint adjustment, their residuals, and the deviations."""
+    rms = [float(np.sqrt(np.mean(np.sum(r**2, axis=1)))) for r in found.corner_residuals]
+    covariance = found.rig.covariance
+    return {
+        "verdict": str(verdict),
+        "views": len(rms),
+        "left_out": list(left_out),
+        "corner_sigma_px": _round(found.corner_sigma, 4),
+        "view_rms_px": [_round(value, 4) for value in rms],
+        "dispersion": _round(found.worth.dispersion, 4),
+        "sigma": {
+            name: _round(float(sigma), 4)
+            for name, sigma in zip(covariance.names, covariance.sigma, strict=True)
+        },
     }
 
 

@@ -1,0 +1,192 @@
+"""Calibrate a camera's port from photos of a board under water: find, fit, judge, save, draw."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from ..calibrate.board import Chessboard
+from ..calibrate.parameters import INTRINSICS
+from ..calibrate.port import PortCalibration, calibrate_port
+from ..calibrate.port_verdict import judge_port
+from ..calibrate.verdict import CalibrationVerdict
+from ..calibrate.view import BoardView
+from ..errors import EstimationError, InputError, MissingResult
+from ..io.rig_toml import parse_rig, read_tables, save_calibration
+from ..types.port import FlatPort
+from ..types.rig import Rig
+from ..types.rig_covariance import RigCovariance
+from .board_views import find_boards
+from .calibrate import open_photos
+from .calibrate_drawing import draw_boards
+from .calibration_record import record_adjustment, record_setting
+from .calibration_state import snapshot, tables_before
+from .progress import Progress, silent
+
+_LEAST, _MOST = 5e-4, 0.5
+"""Distances of a port from the lens that can be [m]."""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A value measured otherwise, and its standard deviation."""
+
+    value: float
+    sigma: float
+
+
+@dataclass(frozen=True)
+class PortKnowledge:
+    """What is known of a port and its water before the photos are looked at."""
+
+    distance: Measured | None = None
+    """From the optical centre to a flat port [m]; None: as in the rig file, and to be found."""
+    index_sigma: float = 2e-4
+    """Standard deviation of the water's index as its temperature and salt give it: half a degree
+    and a PSU. The index stays, but its error goes into the covariance."""
+    is_index_free: bool = False
+    """Whether to find the index too, from the board's known size."""
+    is_camera_free: bool = False
+    """Whether to find the camera too, though it was not calibrated in air."""
+
+
+@dataclass(frozen=True, eq=False)
+class PortResult:
+    """What calibrating a port gave."""
+
+    calibration: PortCalibration
+    """The port and what it is worth."""
+    verdict: CalibrationVerdict
+    """The same in plain words."""
+    num_photos: int
+    """Photos that could be read."""
+    without_board: tuple[str, ...]
+    """Photos in which the board was not found."""
+    skipped: Mapping[str, str]
+    """Photos that could not be read, and why."""
+    pictures: Path
+    """Folder of the photos with their corners drawn."""
+    lasers_to_redo: tuple[int, ...]
+    """Lasers that were calibrated with the camera as it was."""
+
+
+def calibrate_port_from_photos(
+    path: Path,
+    board: Chessboard,
+    rig_path: Path,
+    *,
+    knowledge: PortKnowledge | None = None,
+    progress: Progress = silent,
+) -> PortResult:
+    """Calibrate a camera's port and write it to the rig file; the rest of the file stays.
+
+    The camera is adjusted along within its covariance, and written too. Done again, it starts from
+    the camera as it was before.
+
+    Args:
+        path: A folder of photos of the board, taken through the port in the water of [water], or a
+            video.
+        board: The board.
+        rig_path: The rig file, with its camera, its port as it was measured, and its water.
+        knowledge: What is known beforehand.
+        progress: Told of each photo.
+
+    Raises:
+        MissingResult: The rig has no camera, or no port.
+        InputError: The port's distance cannot be, there are no photos, they are not of the rig's
+            size, or they lie where the drawings go.
+        FormatError: None of the photos can be read, or the rig file is none.
+        NotEnoughData: The board was found in fewer than four photos.
+        Degenerate: The photos do not determine every parameter.
+    """
+    knowledge = knowledge or PortKnowledge()
+    tables = tables_before(read_tables(rig_path), ["port"], name=str(rig_path))
+    rig = _with_port(parse_rig(tables, name=str(rig_path)), rig_path, knowledge)
+    photos, folder = open_photos(path, rig_path, "port")
+    views, _ = find_boards(photos, board, progress, size=rig.camera.size)
+    draw = partial(draw_boards, photos, views, folder, board=board, progress=progress)
+    try:
+        calibration = _fit(views, board, rig, knowledge)
+    except EstimationError as error:
+        draw(residuals={})
+        raise type(error)(f"{error} The photos with their corners lie in {folder}.") from error
+    verdict = judge_port(calibration)
+    record = record_setting(board, len(views), tables) | record_adjustment(
+        calibration.adjustment, calibration.left_out, verdict
+    )
+    redo = _lasers_in(parse_rig(read_tables(rig_path), name=str(rig_path)).covariance)
+    save_calibration(
+        rig_path, calibration.rig, ["port"],
+        record=record | {"before": snapshot(tables)}, keep_water=not knowledge.is_index_free,
+    )  # fmt: skip
+    residuals = dict(
+        zip(
+            (sighting.name for sighting in calibration.sightings),
+            calibration.adjustment.corner_residuals,
+            strict=True,
+        )
+    )
+    draw(residuals=residuals, left_out=calibration.left_out)
+    return PortResult(
+        calibration=calibration,
+        verdict=verdict,
+        num_photos=len(views),
+        without_board=tuple(view.name for view in views if not view.is_found),
+        skipped=photos.skipped,
+        pictures=folder,
+        lasers_to_redo=redo,
+    )
+
+
+def _fit(
+    views: list[BoardView], board: Chessboard, rig: Rig, knowledge: PortKnowledge
+) -> PortCalibration:
+    distance = knowledge.distance
+    free = (
+        *(INTRINSICS if knowledge.is_camera_free else ()),
+        *(("water.index",) if knowledge.is_index_free else ()),
+    )
+    index = RigCovariance(("water.index",), np.array([[knowledge.index_sigma**2]]))
+    prior = None
+    if distance is not None:
+        prior = RigCovariance(("camera.port.distance",), np.array([[distance.sigma**2]]))
+    return calibrate_port(
+        views, board, rig, free=free, prior=prior,
+        considered=None if knowledge.is_index_free else index,
+    )  # fmt: skip
+
+
+def _with_port(rig: Rig, rig_path: Path, knowledge: PortKnowledge) -> Rig:
+    """Give the rig with its port where it was measured to be; refuse one that cannot be."""
+    port = rig.camera.port
+    if port is None or rig.water is None:
+        missing = "[camera.port]" if port is None else "[water]"
+        raise MissingResult(
+            f"{rig_path} has no {missing} yet; write it as you measured it, the port with kind, "
+            "normal, distance_mm, thickness_mm and glass_index, the water with temperature_c and "
+            "salinity_psu, and the photos will tell the rest."
+        )
+    if knowledge.is_camera_free:
+        rig = replace(rig, covariance=rig.covariance.select([]))
+    if not isinstance(port, FlatPort):
+        if knowledge.distance is not None:
+            raise InputError("A dome has a centre, not a distance; leave --distance-mm out.")
+        return rig
+    if knowledge.distance is not None:
+        port = replace(port, distance=knowledge.distance.value)
+    if not _LEAST < port.distance < _MOST:
+        raise InputError(
+            f"The port's distance of {port.distance * 1e3:g} mm cannot be: it lies between "
+            f"{_LEAST * 1e3:g} and {_MOST * 1e3:g} mm. Give it in millimetres, as "
+            "camera.port.distance_mm or --distance-mm."
+        )
+    return replace(rig, camera=replace(rig.camera, port=port))
+
+
+def _lasers_in(covariance: RigCovariance) -> tuple[int, ...]:
+    numbers = {
+        int(name[6:].split("]")[0]) for name in covariance.names if name.startswith("laser[")
+    }
+    return tuple(sorted(numbers))

@@ -1,0 +1,58 @@
+"""The rig as it was before a step of its calibration, so that a step may be done again.
+
+A step adjusts the camera along, within its covariance. Done again on what it left behind, it would
+count its photos twice; so it starts from what it kept in its own record.
+"""
+
+import copy
+from collections.abc import Sequence
+from typing import Any
+
+from ..io.rig_toml import parse_rig
+
+
+def tables_before(tables: dict[str, Any], step: Sequence[str], *, name: str) -> dict[str, Any]:
+    """Give the tables of a rig file as they were before a step; as they are if that is new.
+
+    What has been edited since stays edited: the camera is put back only where it is the one that
+    the step left behind.
+
+    Args:
+        tables: The tables as they are.
+        step: Where in [calibration] the step's record is.
+        name: What an error calls the rig file.
+    """
+    record: Any = tables.get("calibration", {})
+    for word in step:
+        record = record.get(word, {})
+    before = record.get("before")
+    if before is None or not parse_rig(tables, name=name).covariance.names:
+        return tables
+    restored = copy.deepcopy(tables)
+    port = restored["camera"].get("port")
+    restored["camera"] = copy.deepcopy(before["camera"])
+    if port is not None:
+        restored["camera"]["port"] = port
+    for number, laser in before.get("laser", {}).items():
+        if int(number) < len(restored.get("laser", [])):
+            restored["laser"][int(number)] = copy.deepcopy(laser)
+    restored["calibration"].pop("covariance", None)
+    if "covariance" in before:
+        restored["calibration"]["covariance"] = copy.deepcopy(before["covariance"])
+    return restored
+
+
+def snapshot(tables: dict[str, Any]) -> dict[str, Any]:
+    """Give what `tables_before` needs, to be kept in a step's record."""
+    covariance = tables.get("calibration", {}).get("covariance")
+    kept = {"camera": tables["camera"]}
+    if covariance is not None:
+        kept["covariance"] = covariance
+        lasers = {
+            str(number): laser
+            for number, laser in enumerate(tables.get("laser", []))
+            if any(name.startswith(f"laser[{number}]") for name in covariance["parameters"])
+        }
+        if lasers:
+            kept["laser"] = lasers
+    return copy.deepcopy(kept)
