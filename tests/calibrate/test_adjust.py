@@ -164,7 +164,7 @@ def test_what_is_considered_widens_and_goes_along():
     names = port_parameters(FLAT)
     index = RigCovariance(("water.index",), np.array([[1e-3**2]]))
     sure = adjust(rig, seen, names).rig.covariance
-    unsure = adjust(rig, seen, names, considered=index).rig.covariance
+    unsure = adjust(rig, seen, names, prior=index, considered=index.names).rig.covariance
     assert unsure.names == (*names, "water.index")
     assert unsure.sigma[3] == pytest.approx(1e-3)
     moved = adjust(perturb_rig(rig, index.names, np.array([1e-3])), seen, names).rig
@@ -192,3 +192,22 @@ def test_the_stripe_s_noise_is_told_apart_from_the_corners():
     # 1080 corner and over a thousand stripe residuals: 3 % each.
     assert found.corner_sigma == pytest.approx(0.1, rel=0.1)
     assert found.stripe_sigma == pytest.approx(np.hypot(0.1, 0.4), rel=0.1)
+
+
+def test_what_is_considered_in_two_steps_is_worth_what_it_is_in_one():
+    """A prior that goes with the considered index tells as much as its photos would."""
+    rig = rig_behind(FLAT)
+    random = np.random.default_rng(8)
+    first, second = see_boards(random, rig, 10), see_boards(random, rig, 10)
+    names = (*INTRINSICS, *port_parameters(FLAT))
+    index = RigCovariance(("water.index",), np.array([[1e-3**2]]))
+    one = adjust(rig, [*first, *second], names, prior=index, considered=index.names)
+    begun = adjust(rig, first, names, prior=index, considered=index.names)
+    two = adjust(begun.rig, second, names, prior=begun.rig.covariance, considered=index.names)
+    # Noise is told from each half by itself, to 3 % each.
+    scale = np.outer(one.rig.covariance.sigma, one.rig.covariance.sigma)
+    np.testing.assert_allclose(
+        two.rig.covariance.matrix / scale, one.rig.covariance.matrix / scale, atol=0.15
+    )
+    error = np.array(two.rig.camera.focal_length) - one.rig.camera.focal_length
+    assert np.all(np.abs(error) < 0.3 * one.rig.covariance.sigma[:2])

@@ -11,6 +11,7 @@ from ..types.arrays import Pixels, Scalars
 from ..types.pose import Pose
 from ..types.rig import Rig
 from ..types.rig_covariance import RigCovariance
+from .beforehand import Beforehand
 from .linearise import Linearised, Rows, State, linearise, residuals_of
 from .normal_equations import NormalEquations
 from .observed import Boards, Observed
@@ -59,7 +60,7 @@ def adjust(
     names: Sequence[str],
     *,
     prior: RigCovariance | None = None,
-    considered: RigCovariance | None = None,
+    considered: Sequence[str] = (),
 ) -> Adjustment:
     """Adjust parameters of a rig, and the place of every board, to what the photos show.
 
@@ -72,9 +73,9 @@ def adjust(
         rig: The rig to start from; its water is what the photos were taken in.
         sightings: What the photos show.
         names: The parameters to estimate, as `perturb_rig` names them.
-        prior: What is known of some of them beforehand.
-        considered: Parameters that are not estimated but not exact either: their errors go into
-            the covariance.
+        prior: What is known beforehand, of some of them and of those considered.
+        considered: Parameters that are not estimated but, as the prior says, not exact either:
+            their errors go into the covariance.
 
     Raises:
         InputError: A board's points cannot be seen by the rig as it starts.
@@ -84,37 +85,17 @@ def adjust(
         Triggs et al., Bundle adjustment: a modern synthesis, 2000; Marquardt, An algorithm for
         least-squares estimation of nonlinear parameters, 1963.
     """
-    prior, considered = prior or RigCovariance(), considered or RigCovariance()
-    observed = Observed.of(sightings)
     names = tuple(names)
+    known = Beforehand.of(prior or RigCovariance(), names, tuple(considered))
+    observed = Observed.of(sightings)
     state = State(rig, names, np.zeros(len(names)), Boards.of(sightings))
-    information = invert(prior.select([n for n in names if n in prior.names]), names)
-    state = _descend(state, observed, information)
-    all_names = (*names, *(name for name in considered.names if name not in names))
-    end = state.rebase(all_names)
+    state = _descend(state, observed, known.information)
+    end = state.rebase((*names, *considered))
     found = linearise(end, observed, _scale(end, observed))
     weights = _weigh(found, end)
     equations = NormalEquations.of(found, weights.roots, len(sightings))
-    worth = assess(equations, all_names, information, considered)
-    return _sum_up(end, found, weights, worth, sightings, names, prior)
-
-
-def invert(covariance: RigCovariance, names: Sequence[str]) -> Float[np.ndarray, "k k"]:
-    """Give the inverse of a covariance, with zeros for names that it does not have."""
-    information = np.zeros((len(names), len(names)))
-    places = [i for i, name in enumerate(names) if name in covariance.names]
-    if not places:
-        return information
-    known = covariance.select([names[i] for i in places])
-    sigma = known.sigma
-    if not (sigma > 0).all():
-        raise InputError(
-            "A parameter with a deviation of 0 is fixed: leave it out of those to estimate, "
-            f"{', '.join(known.names)}."
-        )
-    inverse = np.linalg.pinv(known.correlation, rcond=1e-12, hermitian=True)
-    information[np.ix_(places, places)] = inverse / np.outer(sigma, sigma)
-    return information
+    worth = assess(equations, end.names, known)
+    return _sum_up(end, found, weights, worth, sightings, names, prior or RigCovariance())
 
 
 def _descend(state: State, observed: Observed, information: Float[np.ndarray, "k k"]) -> State:

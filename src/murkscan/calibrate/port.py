@@ -90,12 +90,13 @@ def calibrate_port(
     refuse_parallel_boards(used, board, rig.camera.size)
     assert rig.camera.port is not None
     wanted = (*port_parameters(rig.camera.port), *free)
-    known = join(rig.covariance, prior)
-    names = (*wanted, *(name for name in known.names if name not in wanted))
+    known = join(join(rig.covariance, prior), considered)
+    apart = () if considered is None else considered.names
+    names = (*wanted, *(n for n in known.names if n not in wanted and n not in apart))
     sightings = [_locate(view, board, rig) for view in used]
     left_out = list[str]()
     while True:
-        found = adjust(rig, sightings, names, prior=known, considered=considered)
+        found = adjust(rig, sightings, names, prior=known, considered=apart)
         worst = _worst(found)
         if worst is None or len(left_out) >= int(_MAX_OUTLIERS * len(used)):
             break

@@ -9,6 +9,7 @@ from jaxtyping import Float
 from ..errors import Degenerate
 from ..types.arrays import Scalars
 from ..types.rig_covariance import RigCovariance
+from .beforehand import Beforehand
 from .normal_equations import NormalEquations
 
 _SINGULAR = 1e-13
@@ -39,16 +40,14 @@ class Worth:
 def assess(
     equations: NormalEquations,
     names: Sequence[str],
-    information: Float[np.ndarray, "k k"],
-    considered: RigCovariance,
+    known: Beforehand,
 ) -> Worth:
     """Tell what the parameters are worth, at the end of an adjustment.
 
     Args:
         equations: The last normal equations, by the estimated parameters and then the considered.
         names: All of these.
-        information: Inverse covariance of what was known beforehand, of the estimated ones.
-        considered: Covariance of the considered parameters.
+        known: What was known beforehand.
 
     Raises:
         Degenerate: Some parameters are not told from each other at all; the message names them.
@@ -60,6 +59,7 @@ def assess(
         1982; White, A heteroskedasticity-consistent covariance matrix estimator,
         Econometrica 48(4), 1980, with whole photos as what is independent.
     """
+    information = known.information
     count = len(information)
     matrices, slopes = equations.reduce()
     own, slopes = matrices[:, :count, :count], slopes[:, :count]
@@ -70,8 +70,8 @@ def assess(
     dispersion = _dispersion(own, slopes, formal)
     sigma_without = np.sqrt(dispersion * np.einsum("pii->pi", formal_without))
     mine = formal if dispersion == 1 else _widen(formal * dispersion, without)
-    carried = -formal @ matrices[:, :count, count:].sum(axis=0)
-    theirs = considered.select(names[count:]).matrix
+    carried = formal @ (known.by_considered - matrices[:, :count, count:].sum(axis=0))
+    theirs = known.considered
     joint = np.block(
         [[mine + carried @ theirs @ carried.T, carried @ theirs], [theirs @ carried.T, theirs]]
     )
