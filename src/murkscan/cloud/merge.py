@@ -23,7 +23,8 @@ def merge_profiles(profile: Profile, trajectory: Trajectory, *, axis: Axis) -> P
 
     Returns:
         The points in the same order, in the world frame [m]. Normals are turned to the camera, and
-        zero where a point has too few neighbours. sigma_common is zero: it is the rig's to state.
+        zero where a point has too few neighbours. sigma_common is zero: who knows the rig's
+        covariance adds it.
 
     Raises:
         InputError: A time lies outside the trajectory, or a point is not finite.

@@ -4,6 +4,7 @@ from ..page import Block, Facts, Gallery, Note, Picture, Section, Table, format_
 from .charts import depth_chart, points_chart, signal_chart
 from .spread import Spread
 from .summary import ScanSummary
+from .trust import AT_95, Trust
 from .words import describe_range, rig_rows, setting_rows
 
 _SKIPS_SHOWN = 50
@@ -23,6 +24,8 @@ def as_html(summary: ScanSummary) -> str:
             Section("Over time", _charts(summary)),
             Section("Numbers", [_spreads(summary)]),
         ]
+    if summary.trust is not None:
+        sections.append(Section("Uncertainty", _uncertainty(summary.trust)))
     if summary.recorded.skips:
         sections.append(Section("Skipped frames", _skips(summary)))
     sections += [
@@ -97,6 +100,42 @@ def _spreads(summary: ScanSummary) -> Table:
         ("signal [grey levels]", *_figures(summary.signal, 1.0)),
     ]
     return Table(rows, head=("", "smallest", "5 %", "median", "95 %", "largest"))
+
+
+def _uncertainty(trust: Trust) -> list[Block]:
+    parts = [("independent", trust.independent), ("common", trust.common), ("both", trust.total)]
+    rows = [
+        (name, *(_at(part, share) for share in ("median", "high")), *_at_95(part))
+        for name, part in parts
+    ]
+    below = "95 % of points below"
+    head = ("[mm]", "at 68 %: median", below, "at 95 %: median", below)
+    blocks: list[Block] = [
+        Note(
+            "How far a point may be off, with a confidence of 68 % (1 σ) and of 95 % (1.96 σ): for "
+            "the median point, and what 95 % of the points do not exceed. The independent part "
+            "differs from point to point, and averaging lowers it; the common part is the rig's, "
+            "shared by all points of the scan, and no average lowers it."
+        ),
+        Table(rows, head=head),
+    ]
+    if trust.common is None:
+        text = (
+            "The rig file states no covariance, so the common part is unknown and missing here; "
+            "murkscan calibrate writes one."
+        )
+        blocks.insert(0, Note(text, "warning"))
+    return blocks
+
+
+def _at(part: Spread | None, share: str) -> float | None:
+    value = None if part is None else getattr(part, share)
+    return None if value is None else 1e3 * value
+
+
+def _at_95(part: Spread | None) -> list[float | None]:
+    values = [_at(part, share) for share in ("median", "high")]
+    return [None if value is None else AT_95 * value for value in values]
 
 
 def _figures(spread: Spread, scale: float) -> list[float | None]:

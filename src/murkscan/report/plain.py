@@ -8,6 +8,7 @@ import numpy as np
 from .spread import Spread
 from .summary import ScanSummary
 from .timeline import Timeline
+from .trust import AT_95, Trust
 from .words import rig_rows
 
 
@@ -22,6 +23,7 @@ def as_json(summary: ScanSummary) -> dict[str, Any]:
         "signal_grey_levels": _as_plain(summary.signal, 1.0),
         "depth_mm": _as_plain(summary.depth, 1e3),
         "sigma_mm": _as_plain(summary.sigma, 1e3),
+        "uncertainty_mm": None if summary.trust is None else _as_uncertainty(summary.trust),
         "spacing_along_stripe_mm": _as_plain(summary.along, 1e3),
         "spacing_along_motion_mm": _as_plain(summary.across, 1e3),
         "rig": dict(rig_rows(summary.rig)),
@@ -82,6 +84,16 @@ def _as_plain(spread: Spread, scale: float) -> dict[str, float | None]:
             ("percent_95", spread.high),
             ("largest", spread.largest),
         )
+    }
+
+
+def _as_uncertainty(trust: Trust) -> dict[str, Any]:
+    """Give the spread over the points of each part, at 68 % (1 σ) and at 95 %."""
+    parts = {"independent": trust.independent, "common": trust.common, "total": trust.total}
+    return {
+        f"{name}_{level}_percent": None if part is None else _as_plain(part, scale)
+        for name, part in parts.items()
+        for level, scale in ((68, 1e3), (95, 1e3 * AT_95))
     }
 
 

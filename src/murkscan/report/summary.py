@@ -16,6 +16,7 @@ from ..types.trajectory import Trajectory
 from .spacing import spacing_across, spacing_along
 from .spread import Spread
 from .timeline import FrameStatistics, Timeline, frame_statistics, make_timeline
+from .trust import Trust, judge_trust
 
 _KEPT = 50_000
 """Numbers of each part of a scan that a spread is taken over, evenly picked."""
@@ -94,6 +95,8 @@ class ScanSummary:
     across: Spread
     """Distance of the same scan line's points on successive stripes: along the motion [m]."""
     model: Model
+    trust: Trust | None
+    """How far to trust the cloud's points; None without a cloud."""
 
     @property
     def num_frames(self) -> int:
@@ -151,6 +154,7 @@ def summarise(
         timeline=make_timeline(frames, parts),
         num_points=int(sum(part.points.sum() for part in parts)),
         model=_measure(cloud, num_outliers, mesh),
+        trust=None if cloud is None or len(cloud) == 0 else judge_trust(cloud, rig),
         **spreads,
     )
 

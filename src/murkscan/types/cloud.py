@@ -29,7 +29,8 @@ class PointCloud:
     sigma: Ratios
     """Standard deviation along the ray, the part independent between points [m]."""
     sigma_common: Ratios
-    """Standard deviation of the part common to the scan [m]; 0 where the rig states none."""
+    """Standard deviation of the part common to the scan, in the direction in which it is largest
+    [m]; 0 where the rig states none."""
     frame: SignedFrameNumbers
     """Index of the frame that saw the point."""
     scan_line: ScanLines

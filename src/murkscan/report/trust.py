@@ -1,0 +1,32 @@
+"""How far to trust the points, as a surveyor reads it: at 68 and at 95 %."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..types.cloud import PointCloud
+from ..types.rig import Rig
+from .spread import Spread
+
+AT_95 = 1.96
+"""Standard deviations within which a Gaussian error stays in 95 % of the cases."""
+
+
+@dataclass(frozen=True)
+class Trust:
+    """Standard deviations of a cloud's points, spread over the points [m]."""
+
+    independent: Spread
+    """What differs from point to point, along the ray: an average of many has less of it."""
+    common: Spread | None
+    """What all points share, since one rig saw them: no average helps. None where the rig file
+    states no covariance."""
+    total: Spread
+    """Both together."""
+
+
+def judge_trust(cloud: PointCloud, rig: Rig) -> Trust:
+    """Give the standard deviations of a cloud's points."""
+    total = np.hypot(cloud.sigma, cloud.sigma_common)
+    common = Spread.from_values(cloud.sigma_common) if rig.covariance.names else None
+    return Trust(Spread.from_values(cloud.sigma), common, Spread.from_values(total))

@@ -1,0 +1,49 @@
+"""The part of the points' uncertainty that a whole scan shares."""
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+
+import numpy as np
+
+from ..optics.uncertainty import common_sigma
+from ..project import Project
+from ..types.arrays import Ratios
+from ..types.profile import Profile
+from ..types.rig import Rig
+
+_PART = 50_000
+"""Points that one thread works on."""
+
+
+def moving_rig(project: Project, rig: Rig) -> Rig:
+    """Give the rig without its mount, where the scan's motion is the camera's own."""
+    motion = project.finished("motion").key["settings"]["motion"]
+    if motion["type"] == "PoseLog":
+        return rig
+    covariance = rig.covariance.without("mount.")
+    return replace(rig, vehicle_from_camera=None, covariance=covariance)
+
+
+def spread_common(profile: Profile, rig: Rig) -> Ratios:
+    """Give the common standard deviation of each point [m]; 0 where the rig states none.
+
+    Args:
+        profile: The points, with the pixels that they come from.
+        rig: The rig, as it moves in this scan.
+    """
+    sigma = np.zeros(len(profile), np.float32)
+    if not rig.covariance.names:
+        return sigma
+    parts = [
+        mine[start : start + _PART]
+        for mine in (np.flatnonzero(profile.laser == n) for n in np.unique(profile.laser))
+        for start in range(0, len(mine), _PART)
+    ]
+
+    def run(part: np.ndarray) -> None:
+        sigma[part] = common_sigma(profile.pixels[part], rig, int(profile.laser[part[0]]))
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(run, parts))
+    return sigma
