@@ -14,7 +14,8 @@ from harness import DATA, Figure, skip, tell
 
 from murkscan.calibrate import Chessboard, Margin
 from murkscan.errors import Degenerate
-from murkscan.survey.calibrate import calibrate_camera_from_photos, calibrate_laser_from_photos
+from murkscan.survey.calibrate import calibrate_camera_from_photos
+from murkscan.survey.calibrate_laser import calibrate_laser_from_photos
 
 PAPER = Margin(left=0.115, right=0.08, top=0.06, bottom=0.065)
 """The white paper of the green laser's board beyond its squares, as its photos show it [m]."""
@@ -80,7 +81,7 @@ def measure_laser(data: Path, scratch: Path) -> Iterator[Figure]:
             scratch / "green_laser.toml",
             margin=margin,
         )
-        found = result.calibration
+        found = result.calibration.fit
         points = np.concatenate(found.points)[np.concatenate(found.inliers)]
         turn = np.linalg.norm(np.cross(found.sheet.normal, NORMAL / np.linalg.norm(NORMAL)))
         off = float(np.abs(points @ NORMAL + DISTANCE).max())

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from murkscan.calibrate import StripeOnBoard, calibrate_laser, judge_laser
+from murkscan.calibrate import StripeOnBoard, fit_sheet, judge_sheet
 from murkscan.errors import Degenerate, NotEnoughData
 from murkscan.optics import project
 from murkscan.types.plane import Plane
@@ -36,10 +36,10 @@ def angle_to_truth(found):
 def test_the_sheet_is_found_within_its_stated_deviation(outliers):
     random = np.random.default_rng(1)
     depths = np.linspace(0.4, 1.0, 20)
-    found = calibrate_laser(list(stripes(random, depths, outliers=outliers)), CAMERA)
+    found = fit_sheet(list(stripes(random, depths, outliers=outliers)), CAMERA)
     assert angle_to_truth(found) < 3 * found.angle_sigma < np.radians(0.15)
     assert found.num_points - found.num_inliers == pytest.approx(20 * outliers, abs=20)
-    assert judge_laser(found).is_good == (outliers == 0)
+    assert judge_sheet(found).is_good == (outliers == 0)
 
 
 def test_the_stated_deviation_holds_when_whole_boards_are_off():
@@ -48,7 +48,7 @@ def test_the_stated_deviation_holds_when_whole_boards_are_off():
     for seed in range(30):
         random = np.random.default_rng(seed)
         seen = list(stripes(random, np.linspace(0.4, 1.0, 15), pose_noise=1e-3))
-        found = calibrate_laser(seen, CAMERA)
+        found = fit_sheet(seen, CAMERA)
         pulls.append(angle_to_truth(found) / found.angle_sigma)
     # Two directions of tilt with one stated deviation, that of the worse: an RMS of 0.7 to 1.4;
     # 30 draws scatter by an eighth.
@@ -56,7 +56,7 @@ def test_the_stated_deviation_holds_when_whole_boards_are_off():
 
 
 def test_the_equivalent_baseline_and_angle_are_those_of_the_sheet():
-    found = calibrate_laser(list(stripes(np.random.default_rng(2), [0.4, 0.6, 0.8, 1.0])), CAMERA)
+    found = fit_sheet(list(stripes(np.random.default_rng(2), [0.4, 0.6, 0.8, 1.0])), CAMERA)
     assert found.laser.axis == "x"
     baseline, angle = found.laser.as_baseline_angle()
     # b and θ as the paper has them: the laser at X = 0.18 is on the far side, so b < 0, θ > 90°.
@@ -68,13 +68,13 @@ def test_the_equivalent_baseline_and_angle_are_those_of_the_sheet():
 def test_one_photo_is_refused():
     seen = list(stripes(np.random.default_rng(3), [0.5]))
     with pytest.raises(NotEnoughData, match="found it in 1 of 1"):
-        calibrate_laser(seen, CAMERA)
+        fit_sheet(seen, CAMERA)
 
 
 def test_boards_in_one_place_are_refused_with_reason_and_remedy():
     seen = list(stripes(np.random.default_rng(4), [0.5, 0.501, 0.502, 0.5, 0.501] * 3, most=1.0))
     with pytest.raises(Degenerate, match="nearly on one line") as refusal:
-        calibrate_laser(seen, CAMERA)
+        fit_sheet(seen, CAMERA)
     assert "nearer and farther" in str(refusal.value)
 
 
@@ -82,5 +82,5 @@ def test_boards_over_a_small_range_are_a_warning():
     seen = list(
         stripes(np.random.default_rng(5), np.linspace(0.5, 0.545, 16), most=1.0, noise=0.05)
     )
-    verdict = judge_laser(calibrate_laser(seen, CAMERA))
+    verdict = judge_sheet(fit_sheet(seen, CAMERA))
     assert "add photos nearer and farther" in str(verdict)

@@ -10,7 +10,8 @@ from murkscan.calibrate.sheet import locate_on_board
 from murkscan.errors import Degenerate, FormatError, InputError, MissingResult, NotEnoughData
 from murkscan.io.images import write_image
 from murkscan.io.rig_toml import load_rig
-from murkscan.survey.calibrate import calibrate_camera_from_photos, calibrate_laser_from_photos
+from murkscan.survey.calibrate import calibrate_camera_from_photos
+from murkscan.survey.calibrate_laser import calibrate_laser_from_photos
 from murkscan.types.camera import Camera
 from murkscan.types.pose import Pose
 
@@ -89,11 +90,8 @@ def test_a_camera_behind_a_port_is_refused_and_its_file_left_alone(photos, tmp_p
     port = "[camera.port]\nkind = 'dome'\nradius_mm = 50\nthickness_mm = 5\nglass_index = 1.5\n"
     rig.write_text(rig.read_text("utf-8") + port, "utf-8")
     before = rig.read_bytes()
-    for calibrate in (calibrate_camera_from_photos, calibrate_laser_from_photos):
-        with pytest.raises(
-            InputError, match=r"has a port.* take \[camera\.port\] and \[water\] out"
-        ):
-            calibrate(photos, BOARD, rig)
+    with pytest.raises(InputError, match=r"has a port.* take \[camera\.port\] and \[water\] out"):
+        calibrate_camera_from_photos(photos, BOARD, rig)
     assert rig.read_bytes() == before
 
 
@@ -233,7 +231,7 @@ def test_the_green_laser_calibrates_to_the_known_sheet(data, tmp_path):
     laser = calibrate_laser_from_photos(
         data("green_laser") / "laser_on_board", GREEN_BOARD, rig, margin=GREEN_MARGIN
     )
-    found = laser.calibration
+    found = laser.calibration.fit
     assert found.rms <= 0.45e-3
     # The reference plane of the recording's README, from an independent fit.
     normal, distance = np.array([-0.9057, 0.1395, -0.4004]), 0.1657

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from ..errors import InputError, NotConverged
-from ..types.arrays import Pixels, Scalars
+from ..types.arrays import Scalars
 from ..types.pose import Pose
 from ..types.rig import Rig
 from ..types.rig_covariance import RigCovariance
@@ -20,6 +20,9 @@ from .weigh import Weights, weigh
 from .worth import Worth, assess
 
 _MAX_STEPS, _MAX_TRIALS = 60, 12
+_MAX_ROUNDS, _AGREED = 4, 1.1
+"""Rounds in which photos are given the weight that their disagreement leaves them, and the growth
+of it that needs no other round."""
 _SETTLED = 1e-6
 """Fall of the sum of squares, in variances, below which all parameters rest to 0.001 sigma."""
 _NEGLIGIBLE = 1e-9
@@ -36,9 +39,11 @@ class Adjustment:
     """The parameters that were estimated."""
     prior: RigCovariance
     """What was known of them beforehand."""
+    changes: Scalars
+    """By how much each has changed from where it started, its value beforehand."""
     camera_from_boards: tuple[Pose, ...]
     """Where the board was in each photo."""
-    corner_residuals: tuple[Pixels, ...]
+    corner_residuals: tuple[Float[np.ndarray, "_ 2"], ...]
     """Corner as found minus corner as projected, of each photo [px]."""
     stripe_residuals: tuple[Float[np.ndarray, "..."], ...]
     """How far each stripe point is off across the stripe, of each photo [px]."""
@@ -89,16 +94,28 @@ def adjust(
     known = Beforehand.of(prior or RigCovariance(), names, tuple(considered))
     observed = Observed.of(sightings)
     state = State(rig, names, np.zeros(len(names)), Boards.of(sightings))
-    state = _descend(state, observed, known.information)
-    end = state.rebase((*names, *considered))
-    found = linearise(end, observed, _scale(end, observed))
-    weights = _weigh(found, end)
-    equations = NormalEquations.of(found, weights.roots, len(sightings))
-    worth = assess(equations, end.names, known)
-    return _sum_up(end, found, weights, worth, sightings, names, prior or RigCovariance())
+    dispersion = 1.0
+    for _ in range(_MAX_ROUNDS):
+        state = _descend(state, observed, known.information, dispersion)
+        end = state.rebase((*names, *considered))
+        found = linearise(end, observed, _scale(end, observed))
+        weights = _weigh(found, end, dispersion)
+        equations = NormalEquations.of(found, weights.roots, len(sightings))
+        worth = assess(equations, end.names, known, dispersion)
+        if worth.dispersion <= _AGREED * dispersion:
+            break
+        # Photos that disagree tell less than their points' noise promises: what was known before
+        # must not give way to them as if they told more.
+        dispersion = worth.dispersion
+    return _sum_up(end, found, weights, worth, sightings, state, prior or RigCovariance())
 
 
-def _descend(state: State, observed: Observed, information: Float[np.ndarray, "k k"]) -> State:
+def _descend(
+    state: State,
+    observed: Observed,
+    information: Float[np.ndarray, "k k"],
+    dispersion: float,
+) -> State:
     """Step downhill until nothing moves any more."""
     damping = 1e-4
     for _ in range(_MAX_STEPS):
@@ -106,7 +123,7 @@ def _descend(state: State, observed: Observed, information: Float[np.ndarray, "k
         found = linearise(state, observed, scale)
         if not np.isfinite(found.residuals).all():
             raise InputError(_out_of_sight(state))
-        weights = _weigh(found, state)
+        weights = _weigh(found, state, dispersion)
         equations = NormalEquations.of(found, weights.roots, len(state.boards.translations))
         pull = information @ state.changes
         now = _cost(found.residuals, weights, state, information)
@@ -157,9 +174,10 @@ def _scale(state: State, observed: Observed) -> Rows:
     return observed.pixels_to_sheet(state.rig, state.boards)
 
 
-def _weigh(found: Linearised, state: State) -> Weights:
+def _weigh(found: Linearised, state: State, dispersion: float) -> Weights:
     return weigh(
         found,
+        dispersion=dispersion,
         num_photos=len(state.boards.translations),
         num_laser_parameters=sum(name.startswith("laser[") for name in state.names),
     )
@@ -180,7 +198,7 @@ def _sum_up(
     weights: Weights,
     worth: Worth,
     sightings: Sequence[Sighting],
-    names: tuple[str, ...],
+    state: State,
     prior: RigCovariance,
 ) -> Adjustment:
     split = found.num_corner_rows
@@ -188,8 +206,9 @@ def _sum_up(
     stripe_ends = np.cumsum([len(s.stripe) for s in sightings])[:-1]
     return Adjustment(
         rig=replace(end.rig, covariance=worth.covariance),
-        names=names,
+        names=state.names,
         prior=prior,
+        changes=state.changes,
         camera_from_boards=end.boards.as_poses(),
         corner_residuals=tuple(np.split(-found.residuals[:split].reshape(-1, 2), corner_ends)),
         stripe_residuals=tuple(np.split(found.residuals[split:], stripe_ends)),

@@ -123,19 +123,6 @@ def calibrate_camera(
     )  # fmt: skip
 
 
-def locate_board(view: BoardView, board: Chessboard, camera: Camera) -> tuple[Pose, Pixels]:
-    """Find camera_from_board of one view of a calibrated camera, and its residuals [px]."""
-    flat = board.points()
-    _, turn, shift = cv2.solvePnP(
-        flat, view.corners, camera.as_matrix(), camera.distortion, flags=cv2.SOLVEPNP_IPPE
-    )
-    turn, shift = cv2.solvePnPRefineLM(
-        flat, view.corners, camera.as_matrix(), camera.distortion, turn, shift
-    )
-    camera_from_board = _as_pose(turn, shift)
-    return camera_from_board, view.corners - _project(camera, turn, shift, flat)
-
-
 def _refuse_one_photo(worth: Worth, views: Sequence[BoardView], focal_length: float) -> None:
     """Refuse a focal length that one view alone tells, such as the one tilted among parallel."""
     worst = int(np.argmax(worth.sigma_without_photo[:, 0]))

@@ -81,10 +81,14 @@ def draw_stripe_on_board(
 
 
 def project_outline(
-    board: Chessboard, margin: Margin, camera: Camera, camera_from_board: Pose
+    board: Chessboard,
+    margin: Margin,
+    camera: Camera,
+    camera_from_board: Pose,
+    index: float | None = None,
 ) -> Pixels:
     """Give where the board's paper ends in the photo [px]; none if it runs behind the camera."""
-    corners = project(camera, camera_from_board @ board.outline(margin))
+    corners = project(camera, camera_from_board @ board.outline(margin), index)
     return corners if np.isfinite(corners).all() else np.zeros((0, 2))
 
 

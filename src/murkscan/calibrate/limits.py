@@ -28,6 +28,10 @@ _LIMITS = {
 in m, angles in rad; focal length and principal point as a share of the focal length."""
 _SILENT = 0.1
 """Share of a parameter's variance beforehand below which photos tell nothing of it."""
+_SHARE_MOVED = 0.05
+"""Share of its variance beforehand that a direction must have lost to count as told by photos."""
+_CHANCE = 4.0
+"""Deviations of a chi-square number up to which it is chance."""
 _TOGETHER = 0.9
 """Correlation from which two parameters are told to go together."""
 _ATTRIBUTES = {"laser": "lasers", "layer": "layers"}
@@ -71,6 +75,30 @@ def silent_parameters(found: Adjustment, wanted: tuple[str, ...]) -> list[str]:
     """Name those of the wanted parameters of which the photos tell nothing new."""
     share = dict(zip(found.names, found.worth.from_photos, strict=True))
     return [name for name in wanted if name in share and share[name] < _SILENT]
+
+
+def contradicts_prior(found: Adjustment) -> bool:
+    """Tell whether photos move what was known beforehand by more than both leave to chance.
+
+    What photos add to a prior moves it by a random step, of a covariance that is the one before
+    minus the one after; a longer step says that one of the two is wrong.
+
+    References:
+        Bar-Shalom, Li and Kirubarajan, Estimation with Applications to Tracking and Navigation,
+        2001, section 5.4, for the test of innovations.
+    """
+    both = [name for name in found.names if name in found.prior.names]
+    if not both:
+        return False
+    before, after = found.prior.select(both), found.rig.covariance.select(both)
+    scale = np.outer(before.sigma, before.sigma)
+    places = [found.names.index(name) for name in both]
+    step = found.changes[places] / before.sigma
+    shares, directions = np.linalg.eigh((before.matrix - after.matrix) / scale)
+    moved = shares > _SHARE_MOVED
+    surprise = np.sum((directions[:, moved].T @ step) ** 2 / shares[moved])
+    count = int(moved.sum())
+    return bool(surprise > count + _CHANCE * np.sqrt(2 * count))
 
 
 def strongest_pairs(covariance: RigCovariance, count: int = 3) -> list[Pair]:

@@ -91,7 +91,7 @@ def calibrate_port(
     assert rig.camera.port is not None
     wanted = (*port_parameters(rig.camera.port), *free)
     known = join(join(rig.covariance, prior), considered)
-    apart = () if considered is None else considered.names
+    apart = indices_apart(known, wanted)
     names = (*wanted, *(n for n in known.names if n not in wanted and n not in apart))
     sightings = [_locate(view, board, rig) for view in used]
     left_out = list[str]()
@@ -115,6 +115,11 @@ def join(covariance: RigCovariance, prior: RigCovariance | None) -> RigCovarianc
     matrix[:, len(kept) :] = matrix[len(kept) :] = 0.0
     matrix[len(kept) :, len(kept) :] = prior.matrix
     return RigCovariance(names, matrix)
+
+
+def indices_apart(known: RigCovariance, wanted: Sequence[str]) -> tuple[str, ...]:
+    """Name the water's index, unless it is wanted: it belongs to the place, not to the rig."""
+    return tuple(n for n in known.names if n.startswith("water.") and n not in wanted)
 
 
 def _locate(view: BoardView, board: Chessboard, rig: Rig) -> Sighting:

@@ -4,7 +4,7 @@ import numpy as np
 
 from ..types.arrays import Pixels
 from .coverage import cover
-from .limits import as_read, silent_parameters
+from .limits import as_read, contradicts_prior, silent_parameters
 from .port import PortCalibration
 from .reach import reach_of, shape_sigma
 from .verdict import CalibrationVerdict
@@ -50,6 +50,12 @@ def judge_port(calibration: PortCalibration) -> CalibrationVerdict:
         advice.append(
             "Whole photos disagree by more than their corners' noise; check that the board is "
             "flat, and that nothing moved between the photos."
+        )
+    if contradicts_prior(found):
+        advice.append(
+            "The photos contradict what was known before, the camera as calibrated in air or what "
+            "was measured, by more than the deviations allow; check the kind, thickness and glass "
+            "of the port, the [water], the board's squares, and that focus and zoom are the same."
         )
     share = shape_sigma(rig, middle) / middle
     if share > _SHAPE:

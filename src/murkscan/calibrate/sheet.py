@@ -1,4 +1,4 @@
-"""The sheet of laser light from stripes on boards."""
+"""A flat sheet of laser light from stripes on boards: where its adjustment starts."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -37,23 +37,24 @@ class StripeOnBoard:
     camera_from_board: Pose
     """Where the board was."""
 
-    def points(self, camera: Camera) -> Points:
+    def points(self, camera: Camera, index: float | None = None) -> Points:
         """Give the stripe in the camera frame [m]: where each pixel's ray meets the board."""
-        return locate_on_board(camera, self.pixels, self.camera_from_board)
+        return locate_on_board(camera, self.pixels, self.camera_from_board, index)
 
 
 @dataclass(frozen=True, eq=False)
-class LaserCalibration:
-    """A laser, and what it is worth."""
+class SheetFit:
+    """A flat sheet, and the stripes on boards that it passes through."""
 
     sheet: Plane
-    """The sheet, in the camera frame; its normal points to + of the laser's axis."""
+    """The sheet, in the camera frame; its normal points to + of the laser's axis. Of a sheet bent
+    by a port, the plane nearest to it."""
     stripes: tuple[StripeOnBoard, ...]
     """The stripes that it was calibrated on."""
     points: tuple[Float[np.ndarray, "_ 3"], ...]
     """Their points in the camera frame [m]."""
     residuals: tuple[Float[np.ndarray, "..."], ...]
-    """Distance of each point from the sheet [m], signed."""
+    """Distance of each point from the sheet [m], signed; from the bent one where it is bent."""
     inliers: tuple[Bool[np.ndarray, "..."], ...]
     """Which points the sheet was fitted to."""
     angle_sigma: float
@@ -86,20 +87,28 @@ class LaserCalibration:
         return tuple(float(np.sqrt(np.mean(d**2))) for d in self.residuals)
 
 
-def locate_on_board(camera: Camera, pixels: Pixels, camera_from_board: Pose) -> Points:
-    """Give where each pixel's ray meets the board, in the camera frame [m]; NaN where not."""
+def locate_on_board(
+    camera: Camera, pixels: Pixels, camera_from_board: Pose, index: float | None = None
+) -> Points:
+    """Give where each pixel's ray meets the board, in the camera frame [m]; NaN where not.
+
+    Behind a port, `index` is that of what lies outside it.
+    """
     board_plane = Plane.through(camera_from_board.translation, camera_from_board.rotation[:, 2])
     if len(pixels) == 0:
         return np.zeros((0, 3))
-    return intersect_rays_with_plane(back_project(camera, pixels), board_plane)
+    return intersect_rays_with_plane(back_project(camera, pixels, index), board_plane)
 
 
-def calibrate_laser(stripes: Sequence[StripeOnBoard], camera: Camera) -> LaserCalibration:
-    """Fit the laser's sheet to stripes on boards.
+def fit_sheet(
+    stripes: Sequence[StripeOnBoard], camera: Camera, index: float | None = None
+) -> SheetFit:
+    """Fit a flat sheet to stripes on boards, with camera and boards as they are.
 
     Args:
         stripes: Stripes, one a photo; those of length 0 are passed over.
         camera: The camera that took the photos.
+        index: Refractive index of what lies outside the camera's port; of no effect without one.
 
     Raises:
         NotEnoughData: Fewer than two photos show a stripe.
@@ -119,7 +128,7 @@ def calibrate_laser(stripes: Sequence[StripeOnBoard], camera: Camera) -> LaserCa
             "which any sheet fits. Take photos with the line across the board, near and far, and "
             "say how far its paper runs on beyond the squares."
         )
-    points = tuple(stripe.points(camera) for stripe in used)
+    points = tuple(stripe.points(camera, index) for stripe in used)
     fit = fit_plane(np.concatenate(points))
     ends = np.cumsum([len(p) for p in points])[:-1]
     inliers = tuple(np.split(fit.inliers, ends))
@@ -127,7 +136,7 @@ def calibrate_laser(stripes: Sequence[StripeOnBoard], camera: Camera) -> LaserCa
     _refuse_one_place(fit, np.concatenate(points), angle_sigma, len(used))
     sheet = _turn_to_axis(fit.plane)
     residuals = tuple(sheet.distance_to(p) for p in points)
-    return LaserCalibration(sheet, used, points, residuals, inliers, angle_sigma)
+    return SheetFit(sheet, used, points, residuals, inliers, angle_sigma)
 
 
 def _turn_to_axis(sheet: Plane) -> Plane:

@@ -32,7 +32,13 @@ _EDGE_STEPS = 16
 
 
 def mask_to_sheet(
-    image: Image, board: Chessboard, margin: Margin, *, camera: Camera, camera_from_board: Pose
+    image: Image,
+    board: Chessboard,
+    margin: Margin,
+    *,
+    camera: Camera,
+    camera_from_board: Pose,
+    index: float | None = None,
 ) -> Image:
     """Blacken everything outside of the board's sheet, squares and margin."""
     corners = board.outline(margin)
@@ -40,7 +46,7 @@ def mask_to_sheet(
     sides = [
         a + share * (b - a) for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True)
     ]
-    outline = project(camera, camera_from_board @ np.concatenate(sides))
+    outline = project(camera, camera_from_board @ np.concatenate(sides), index)
     mask = np.zeros_like(image)
     if np.isfinite(outline).all():
         cv2.fillPoly(mask, [np.round(outline).astype(np.int32)], 1)
@@ -67,10 +73,11 @@ def keep_on_board(
     *,
     camera: Camera,
     camera_from_board: Pose,
+    index: float | None = None,
 ) -> StripeOnBoard:
     """Keep the stripe points on the board's blank paper that lie on one straight line.
 
-    The sheet meets the board in a straight line; what lies beside it is glare or noise.
+    The sheet meets the board in a line as good as straight; what lies beside it is glare or noise.
 
     Args:
         pixels: Stripe points found in the photo [px].
@@ -79,12 +86,13 @@ def keep_on_board(
         margin: How far its sheet runs on beyond the squares.
         camera: The camera.
         camera_from_board: Where the board is.
+        index: Refractive index of what lies outside the camera's port; of no effect without one.
 
     Returns:
         The stripe; of length 0 where the photo does not show one on the board.
     """
     rim = min(_RIM / smallest_pitch(view.corners, board), _MAX_RIM) * board.square
-    in_camera = locate_on_board(camera, pixels, camera_from_board)
+    in_camera = locate_on_board(camera, pixels, camera_from_board, index)
     in_board = camera_from_board.inverse() @ in_camera
     is_on_paper = board.is_on_paper(in_board, margin, rim=rim, is_first_dark=view.is_first_dark)
     flat = in_camera[is_on_paper, :2] / in_camera[is_on_paper, 2:] * camera.focal_length

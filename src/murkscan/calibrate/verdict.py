@@ -6,7 +6,7 @@ import numpy as np
 
 from .camera import PARAMETERS, CameraCalibration
 from .coverage import coverage_of
-from .sheet import LaserCalibration
+from .sheet import SheetFit
 
 _VIEWS = 15
 """Views asked for, as in the paper."""
@@ -77,8 +77,8 @@ def judge_camera(calibration: CameraCalibration) -> CalibrationVerdict:
     )
 
 
-def judge_laser(calibration: LaserCalibration) -> CalibrationVerdict:
-    """Judge a laser's calibration."""
+def judge_sheet(calibration: SheetFit) -> CalibrationVerdict:
+    """Judge a sheet from stripes on boards."""
     advice = []
     count = len(calibration.stripes)
     if count < _VIEWS:
@@ -107,7 +107,7 @@ def judge_laser(calibration: LaserCalibration) -> CalibrationVerdict:
     )
 
 
-def distances_of(calibration: LaserCalibration) -> tuple[float, float]:
+def distances_of(calibration: SheetFit) -> tuple[float, float]:
     """Give the nearest and the farthest depth z at which the stripe was seen on a board [m]."""
     depths = [
         points[mask, 2].mean()

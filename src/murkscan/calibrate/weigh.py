@@ -26,16 +26,20 @@ class Weights:
     shares: Rows
     """1 for a residual that fits, less beyond 5 standard deviations, 0 beyond 10."""
     num_corner_rows: int
+    dispersion: float
+    """How much less all of them tell than their noise promises, as a ratio of variances."""
 
     @property
     def roots(self) -> Rows:
         """Square root of each row's weight [1/px]."""
         sigma = np.full(len(self.shares), self.stripe_sigma)
         sigma[: self.num_corner_rows] = self.corner_sigma
-        return np.sqrt(self.shares) / sigma
+        return np.sqrt(self.shares / self.dispersion) / sigma
 
 
-def weigh(found: Linearised, *, num_photos: int, num_laser_parameters: int) -> Weights:
+def weigh(
+    found: Linearised, *, num_photos: int, num_laser_parameters: int, dispersion: float
+) -> Weights:
     """Tell the noise from the residuals, and weigh each by how far it stands out.
 
     References:
@@ -53,6 +57,7 @@ def weigh(found: Linearised, *, num_photos: int, num_laser_parameters: int) -> W
         _rms(found.residuals[split:], stripe_shares, num_laser_parameters),
         np.concatenate([corner_shares, stripe_shares]),
         split,
+        dispersion,
     )
 
 

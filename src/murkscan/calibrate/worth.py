@@ -26,8 +26,8 @@ class Worth:
     """Of the estimated and the considered parameters together."""
     dispersion: float
     """How much more whole photos disagree than their points' noise explains, as a ratio of
-    variances; 1 unless it is above that for sure, as where a board is not flat. The covariance has
-    been multiplied by it, and widened to the jackknife's where that is larger."""
+    variances; 1 unless it is above that for sure, as where a board is not flat. The photos'
+    weight is lowered by it, and deviations are raised to the jackknife's where that is larger."""
     without_photo: Float[np.ndarray, "p k"]
     """By how much each estimated parameter would change without each photo, in its own unit."""
     sigma_without_photo: Float[np.ndarray, "p k"]
@@ -41,6 +41,7 @@ def assess(
     equations: NormalEquations,
     names: Sequence[str],
     known: Beforehand,
+    taken: float,
 ) -> Worth:
     """Tell what the parameters are worth, at the end of an adjustment.
 
@@ -48,6 +49,7 @@ def assess(
         equations: The last normal equations, by the estimated parameters and then the considered.
         names: All of these.
         known: What was known beforehand.
+        taken: The dispersion by which the weights have been lowered already.
 
     Raises:
         Degenerate: Some parameters are not told from each other at all; the message names them.
@@ -67,9 +69,9 @@ def assess(
     formal = _invert(total, names[:count])
     formal_without = np.linalg.pinv(total - own, rcond=_SINGULAR, hermitian=True)
     without = np.einsum("pij,pj->pi", formal_without, slopes)
-    dispersion = _dispersion(own, slopes, formal)
-    sigma_without = np.sqrt(dispersion * np.einsum("pii->pi", formal_without))
-    mine = formal if dispersion == 1 else _widen(formal * dispersion, without)
+    dispersion = taken * _dispersion(own, slopes, formal)
+    sigma_without = np.sqrt(dispersion / taken * np.einsum("pii->pi", formal_without))
+    mine = formal if dispersion == 1 else _widen(formal * (dispersion / taken), without)
     carried = formal @ (known.by_considered - matrices[:, :count, count:].sum(axis=0))
     theirs = known.considered
     joint = np.block(

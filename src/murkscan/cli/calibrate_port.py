@@ -12,6 +12,7 @@ from .words import print_table, say, say_verdict
 
 if TYPE_CHECKING:
     from ..calibrate.adjust import Adjustment
+    from ..survey.calibrate_laser import LaserResult
     from ..survey.calibrate_port import Measured, PortResult
 
 _NUMBER = r"[0-9]*\.?[0-9]+"
@@ -99,7 +100,7 @@ def print_parameters(found: "Adjustment", title: str) -> None:
         say(f"{pair.first} and {pair.second} go together: correlation {pair.correlation:+.3f}.")
 
 
-def say_photos(result: "PortResult", *, used: int) -> None:
+def say_photos(result: "PortResult | LaserResult", *, used: int) -> None:
     """Say which photos were used, and which were not and why."""
     words = f"{used} of {result.num_photos} photos used"
     if result.without_board:

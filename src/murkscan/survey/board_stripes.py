@@ -6,12 +6,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..calibrate.board import Chessboard, Margin
-from ..calibrate.camera import locate_board
 from ..calibrate.contrast import laser_contrast, white_of_board
+from ..calibrate.seen_board import locate_seen_board
 from ..calibrate.sheet import StripeOnBoard
 from ..calibrate.stripe_on_board import count_lit_lines, keep_on_board, mask_to_sheet
 from ..calibrate.view import BoardView
 from ..extract import AbstractExtractor
+from ..optics import refractive_index
 from ..types.arrays import Image, Pixels
 from ..types.frame import Frame
 from ..types.laser import Laser
@@ -36,7 +37,7 @@ class StripeFinder:
         """Give the stripe of each photo with a board; of length 0 where there is none."""
         by_name = {view.name: view for view in self.views if view.is_found}
         poses = {
-            name: locate_board(view, self.board, self.rig.camera)[0]
+            name: locate_seen_board(view.corners, self.board, self.rig.camera, self._index)
             for name, view in by_name.items()
         }
         shown = (photo for photo in self.photos if photo.name in by_name)
@@ -53,17 +54,22 @@ class StripeFinder:
             stripes.append(
                 keep_on_board(
                     pixels, by_name[name], self.board, self.margin,
-                    camera=rig.camera, camera_from_board=poses[name],
+                    camera=rig.camera, camera_from_board=poses[name], index=self._index,
                 )
             )  # fmt: skip
             progress("find stripes", number + 1, len(by_name))
         return stripes
 
+    @property
+    def _index(self) -> float:
+        return refractive_index(self.rig.water, self.rig.wavelength)
+
     def _contrast(self, photo: Photo, view: BoardView, camera_from_board: Pose) -> Image:
         white = white_of_board(photo.image, view, self.board)
         return mask_to_sheet(
             laser_contrast(photo.image, self.rig.wavelength, white=white),
-            self.board, self.margin, camera=self.rig.camera, camera_from_board=camera_from_board,
+            self.board, self.margin,
+            camera=self.rig.camera, camera_from_board=camera_from_board, index=self._index,
         )  # fmt: skip
 
     def _extract(self, image: Image, number: int, rig: Rig) -> Pixels:

@@ -6,19 +6,15 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ..calibrate.board import Chessboard, Margin
+from ..calibrate.board import Chessboard
 from ..calibrate.camera import CameraCalibration, calibrate_camera
-from ..calibrate.sheet import LaserCalibration, calibrate_laser
-from ..calibrate.verdict import CalibrationVerdict, judge_camera, judge_laser
-from ..errors import EstimationError, InputError, MissingResult
-from ..extract import AbstractExtractor, GrayGravity
-from ..io.rig_toml import parse_rig, read_tables, save_calibration
-from ..types.rig import Rig
+from ..calibrate.verdict import CalibrationVerdict, judge_camera
+from ..errors import EstimationError, InputError
+from ..io.rig_toml import read_tables, save_calibration
 from .board_photos import BoardPhotos
-from .board_stripes import StripeFinder
 from .board_views import find_boards
-from .calibrate_drawing import draw_boards, draw_stripes
-from .calibration_record import record_camera, record_laser, record_setting
+from .calibrate_drawing import draw_boards
+from .calibration_record import record_camera, record_setting
 from .progress import Progress, silent
 
 
@@ -38,26 +34,6 @@ class CameraResult:
     """Photos that could not be read, and why."""
     pictures: Path
     """Folder of the photos with their corners drawn."""
-
-
-@dataclass(frozen=True, eq=False)
-class LaserResult:
-    """What calibrating a laser gave."""
-
-    calibration: LaserCalibration
-    """The laser and what it is worth."""
-    verdict: CalibrationVerdict
-    """The same in plain words."""
-    num_photos: int
-    """Photos that could be read."""
-    without_board: tuple[str, ...]
-    """Photos in which the board was not found."""
-    without_stripe: tuple[str, ...]
-    """Photos with a board but no stripe on its paper."""
-    skipped: Mapping[str, str]
-    """Photos that could not be read, and why."""
-    pictures: Path
-    """Folder of the photos with their stripes drawn."""
 
 
 def calibrate_camera_from_photos(
@@ -104,68 +80,6 @@ def calibrate_camera_from_photos(
     return CameraResult(calibration, verdict, len(views), without, photos.skipped, folder)
 
 
-def calibrate_laser_from_photos(
-    path: Path,
-    board: Chessboard,
-    rig_path: Path,
-    *,
-    margin: Margin | None = None,
-    laser: int = 0,
-    extractor: AbstractExtractor | None = None,
-    progress: Progress = silent,
-) -> LaserResult:
-    """Calibrate the sheet of a laser and write it to a rig file; the rest of the file stays.
-
-    Args:
-        path: A folder of photos of the laser's line on the board, or a video.
-        board: The board.
-        rig_path: The rig file, with its camera.
-        margin: How far the board's flat paper runs on beyond its squares; unless given, one square.
-        laser: Number of the laser that is new or replaced.
-        extractor: The way to find the stripe; gray gravity unless given.
-        progress: Told of each photo.
-
-    Raises:
-        MissingResult: The camera has not been calibrated.
-        InputError: The rig's camera has a port, the number of the laser leaves a gap, there are no
-            photos, they are not of the rig's size, or they lie where the drawings go.
-        FormatError: None of the photos can be read, or the rig file is none.
-        NotEnoughData: Fewer than two photos show the board and the stripe.
-        Degenerate: The boards stood nearly in one place.
-    """
-    tables = _read_without_port(rig_path)
-    rig = _parse_calibrated(tables, rig_path, laser)
-    photos, folder = open_photos(path, rig_path, f"laser_{laser}")
-    views, _ = find_boards(photos, board, progress, size=rig.camera.size)
-    margin = margin or Margin(board.square, board.square, board.square, board.square)
-    finder = StripeFinder(photos, views, board, margin, rig, extractor or GrayGravity())
-    stripes = finder.find(progress)
-    draw = partial(
-        draw_stripes, photos, stripes, folder,
-        board=board, margin=margin, camera=rig.camera, progress=progress,
-    )  # fmt: skip
-    try:
-        calibration = calibrate_laser(stripes, rig.camera)
-    except EstimationError as error:
-        draw(calibration=None)
-        raise type(error)(f"{error} The photos with their stripes lie in {folder}.") from error
-    verdict = judge_laser(calibration)
-    record = record_setting(board, len(views), tables) | record_laser(calibration, verdict)
-    save_calibration(
-        rig_path, rig, ["laser", str(laser)], record=record, lasers={laser: calibration.laser}
-    )
-    draw(calibration=calibration)
-    return LaserResult(
-        calibration=calibration,
-        verdict=verdict,
-        num_photos=len(views),
-        without_board=tuple(view.name for view in views if not view.is_found),
-        without_stripe=tuple(stripe.name for stripe in stripes if len(stripe.pixels) == 0),
-        skipped=photos.skipped,
-        pictures=folder,
-    )
-
-
 def open_photos(path: Path, rig_path: Path, name: str) -> tuple[BoardPhotos, Path]:
     """Open the photos; give them, and the folder that the drawings of this calibration go to."""
     folder = rig_path.parent / "calibrate" / name
@@ -183,24 +97,8 @@ def _read_without_port(rig_path: Path) -> dict[str, Any]:
     camera = tables.get("camera")
     if isinstance(camera, dict) and "port" in camera:
         raise InputError(
-            f"The camera of {rig_path} has a port, and a camera and its lasers can be calibrated "
-            "in air without one only; take [camera.port] and [water] out, photograph in air, and "
-            "put them back."
+            f"The camera of {rig_path} has a port, and a camera is calibrated in air without one; "
+            "take [camera.port] and [water] out, photograph in air, and put them back. Boards seen "
+            "through the port are for `murkscan calibrate port`."
         )
     return tables
-
-
-def _parse_calibrated(tables: dict[str, Any], rig_path: Path, laser: int) -> Rig:
-    """Make a rig that has a camera, and room for the laser."""
-    if "camera" not in tables:
-        raise MissingResult(
-            f"{rig_path} has no camera yet; run `murkscan calibrate camera` first with the same "
-            "--rig."
-        )
-    rig = parse_rig(tables, name=str(rig_path))
-    if not 0 <= laser <= len(rig.lasers):
-        raise InputError(
-            f"{rig_path} has {len(rig.lasers)} laser(s), numbered from 0, so --laser may be "
-            f"0 to {len(rig.lasers)}, not {laser}."
-        )
-    return rig

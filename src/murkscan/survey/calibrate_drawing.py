@@ -7,11 +7,12 @@ import numpy as np
 
 from ..calibrate.board import Chessboard, Margin
 from ..calibrate.drawing import draw_board, draw_stripe_on_board, project_outline
-from ..calibrate.sheet import LaserCalibration, StripeOnBoard
+from ..calibrate.sheet import SheetFit, StripeOnBoard
 from ..calibrate.view import BoardView
 from ..io.images import write_image
+from ..optics import refractive_index
 from ..types.arrays import Pixels
-from ..types.camera import Camera
+from ..types.rig import Rig
 from .board_photos import BoardPhotos
 from .progress import Progress
 
@@ -54,14 +55,15 @@ def draw_stripes(
     *,
     board: Chessboard,
     margin: Margin,
-    camera: Camera,
-    calibration: LaserCalibration | None,
+    rig: Rig,
+    fit: SheetFit | None,
     progress: Progress,
 ) -> None:
     """Draw the stripe points of every photo with a board, coloured by residual."""
     _clear(folder)
     found = {stripe.name: stripe for stripe in stripes}
-    used = {} if calibration is None else _number(calibration.stripes)
+    used = {} if fit is None else _number(fit.stripes)
+    index = refractive_index(rig.water, rig.wavelength)
     done = 0
     for photo in photos:
         if photo.name not in found:
@@ -73,15 +75,15 @@ def draw_stripes(
             else (f"{stripe.name}: no stripe on the board's paper")
         )
         residuals = np.zeros(len(stripe.pixels))
-        if calibration is not None and stripe.name in used:
-            residuals = calibration.residuals[used[stripe.name]]
-            note += f", RMS {calibration.view_rms[used[stripe.name]] * 1e3:.2f} mm"
+        if fit is not None and stripe.name in used:
+            residuals = fit.residuals[used[stripe.name]]
+            note += f", RMS {fit.view_rms[used[stripe.name]] * 1e3:.2f} mm"
         picture = draw_stripe_on_board(
             photo.image,
             stripe.pixels,
             residuals,
             note,
-            outline=project_outline(board, margin, camera, stripe.camera_from_board),
+            outline=project_outline(board, margin, rig.camera, stripe.camera_from_board, index),
             tolerance=_SHEET_TOLERANCE,
         )
         write_image(folder / f"{stripe.name}{_SUFFIX}", picture)
@@ -89,7 +91,7 @@ def draw_stripes(
         progress("draw", done, len(stripes))
 
 
-def _number(items: Sequence[BoardView | StripeOnBoard]) -> dict[str, int]:
+def _number(items: Sequence[StripeOnBoard]) -> dict[str, int]:
     return {item.name: number for number, item in enumerate(items)}
 
 

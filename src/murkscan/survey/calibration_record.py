@@ -9,7 +9,7 @@ import numpy as np
 from ..calibrate.adjust import Adjustment
 from ..calibrate.board import Chessboard
 from ..calibrate.camera import PARAMETERS, CameraCalibration
-from ..calibrate.sheet import LaserCalibration
+from ..calibrate.sheet import SheetFit
 from ..calibrate.verdict import CalibrationVerdict, name_sigma
 
 
@@ -65,16 +65,14 @@ def record_adjustment(
     }
 
 
-def record_laser(calibration: LaserCalibration, verdict: CalibrationVerdict) -> dict[str, Any]:
-    """Record the photos of a laser, their residuals, and how well its direction is known."""
+def record_laser(fit: SheetFit) -> dict[str, Any]:
+    """Record the stripes of a laser, their residuals, and how well its direction is known."""
     return {
-        "verdict": str(verdict),
-        "views": len(calibration.stripes),
-        "points": calibration.num_points,
-        "inliers": calibration.num_inliers,
-        "rms_mm": round(calibration.rms * 1e3, 4),
-        "view_rms_mm": [round(rms * 1e3, 4) for rms in calibration.view_rms],
-        "angle_sigma_deg": _round(float(np.degrees(calibration.angle_sigma)), 4),
+        "points": fit.num_points,
+        "inliers": fit.num_inliers,
+        "rms_mm": round(fit.rms * 1e3, 4),
+        "view_rms_mm": [round(rms * 1e3, 4) for rms in fit.view_rms],
+        "angle_sigma_deg": _round(float(np.degrees(fit.angle_sigma)), 4),
     }
 
 
