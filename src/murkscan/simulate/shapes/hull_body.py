@@ -1,5 +1,7 @@
 """The bare hull as one closed surface, with a place pushed in for its through-hull."""
 
+import math
+
 import numpy as np
 
 from ...types.arrays import Scalars
@@ -8,8 +10,11 @@ from .hull_form import HullForm
 from .solids import Rings, grid_faces
 from .through_hull import ThroughHull
 
-_CELL = 1.6e-3
-"""Side of a cell of the grid on a model that is 0.28 m broad [m]."""
+_NUM_TRIANGLES = 260_000
+"""Triangles of the shell."""
+_CELL = 2.5e-3
+"""Largest side of a cell on a model that is 0.28 m broad [m]: two cells lie hidden in the flange of
+the through-hull."""
 _DECK_CELLS = 12
 
 
@@ -36,13 +41,12 @@ def hull_body(form: HullForm, through_hull: ThroughHull) -> Mesh:
 
 def _grid(form: HullForm) -> tuple[Scalars, Scalars]:
     """Choose stations, and depth shares that are evenly spaced around the midship section."""
-    cell = _CELL * form.unit
-    stations = np.linspace(-1, 1, round(form.length / cell) + 1)
     fine = np.linspace(0, 1, 2001)
     girth = np.linalg.norm(np.diff(form.points(np.zeros(2001), fine), axis=0), axis=1).cumsum()
-    count = round(girth[-1] / cell)
-    shares = np.interp(np.linspace(0, girth[-1], count + 1), np.append(0, girth), fine)
-    return stations, shares
+    cell = min(math.sqrt(4 * form.length * girth[-1] / _NUM_TRIANGLES), _CELL * form.unit)
+    stations = np.linspace(-1, 1, round(form.length / cell) + 1)
+    spaced = np.linspace(0, girth[-1], round(girth[-1] / cell) + 1)
+    return stations, np.interp(spaced, np.append(0, girth), fine)
 
 
 def _weld(rings: Rings, waterline_to_keel: int) -> Mesh:
