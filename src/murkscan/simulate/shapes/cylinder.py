@@ -10,8 +10,10 @@ from ...types.mesh import Mesh
 from .base import AbstractShape, check_sizes
 from .solids import close_tube, refine_line
 
-_SECTIONS, _CELLS = 720, 20
-"""Facets around, and the fewest rings along one radius."""
+_SECTIONS = 720
+"""Facets around."""
+_CELLS, _MOST_CELLS = 20, 200
+"""Cells along one radius of the length, and at most along all of it."""
 
 
 @final
@@ -36,7 +38,7 @@ class Cylinder(AbstractShape):
         """Make a closed surface."""
         angles = np.linspace(0, math.tau, _SECTIONS, endpoint=False)
         ends = np.array([[-self.length / 2], [self.length / 2]])
-        y = refine_line(ends, self.radius / _CELLS)
+        y = refine_line(ends, max(self.radius / _CELLS, self.length / _MOST_CELLS))
         rings = np.empty((len(y), _SECTIONS, 3))
         rings[..., 0], rings[..., 2] = np.cos(angles) * self.radius, -np.sin(angles) * self.radius
         rings[..., 1] = y

@@ -3,12 +3,15 @@
 import math
 
 import numpy as np
+from jaxtyping import Float
 
-from ...types.arrays import Scalars
 from ...types.mesh import Mesh
 from .hull_form import HullForm
 from .solids import Rings, grid_faces
 from .through_hull import ThroughHull
+
+Stations = Float[np.ndarray, "stations"]
+Shares = Float[np.ndarray, "shares"]
 
 _NUM_TRIANGLES = 260_000
 """Triangles of the shell."""
@@ -39,7 +42,7 @@ def hull_body(form: HullForm, through_hull: ThroughHull) -> Mesh:
     return _weld(rings, len(shares))
 
 
-def _grid(form: HullForm) -> tuple[Scalars, Scalars]:
+def _grid(form: HullForm) -> tuple[Stations, Shares]:
     """Choose stations, and depth shares that are evenly spaced around the midship section."""
     fine = np.linspace(0, 1, 2001)
     girth = np.linalg.norm(np.diff(form.points(np.zeros(2001), fine), axis=0), axis=1).cumsum()

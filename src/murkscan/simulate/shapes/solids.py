@@ -6,15 +6,17 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from ...types.arrays import Directions, Faces, Points, Scalars
+from ...types.arrays import Directions, Faces, Points
 from ...types.mesh import Mesh
 
 Rings = Float[np.ndarray, "rings points 3"]
 """Closed loops of points [m], one behind the other along a tube."""
-Line = Float[np.ndarray, "n axes"]
+Line = Float[np.ndarray, "_ axes"]
 """Points of a line, one a row, of any number of coordinates."""
 Sections = Float[np.ndarray, "rings points 2"]
 """Flat closed loops, one a stage of a way."""
+Cuts = Float[np.ndarray, "_"]
+"""Where a grid is cut along one axis [m], growing."""
 Blocks = Bool[np.ndarray, "columns rows layers"]
 """Which blocks of a grid are solid."""
 VertexGrid = Int[np.ndarray, "rows columns"]
@@ -108,11 +110,11 @@ def join_meshes(parts: Sequence[Mesh]) -> Mesh:
     return Mesh(np.concatenate([part.vertices for part in parts]), np.concatenate(faces))
 
 
-def enclose_blocks(x: Scalars, y: Scalars, z: Scalars, filled: Blocks) -> Mesh:
+def enclose_blocks(x: Cuts, y: Cuts, z: Cuts, filled: Blocks) -> Mesh:
     """Make the surface of the filled blocks of a grid.
 
     Args:
-        x: Where the blocks begin and end along x [m], growing.
+        x: Where the blocks begin and end along x.
         y: The same along y.
         z: The same along z.
         filled: Which blocks are solid, as [x, y, z].

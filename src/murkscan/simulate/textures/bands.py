@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import Literal, final
+from typing import final
 
 import numpy as np
 
@@ -23,8 +23,8 @@ class Bands(AbstractTexture):
     """Albedo of each band."""
     widths: tuple[float, ...] = (0.05, 0.05)
     """Width of each band along the axis [m]."""
-    axis: Literal["x", "y", "z"] = "y"
-    """The axis of the object along which they follow one another."""
+    axis: str = "y"
+    """The axis of the object along which they follow one another: x, y or z."""
 
     def __post_init__(self) -> None:
         """Refuse a single band, and bands without width."""
