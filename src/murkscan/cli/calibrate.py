@@ -30,6 +30,11 @@ app.command(
     name="mount",
     help="Find where the camera sits on the vehicle, from photos of a board that stands still.",
 )
+app.command(
+    "murkscan.cli.calibrate_check:check",
+    name="check",
+    help="Measure a known length in the scan's own water, and say whether the rig is right.",
+)
 
 
 @app.command
