@@ -14,7 +14,6 @@ from murkscan.calibrate.observed import index_of
 from murkscan.calibrate.parameters import INTRINSICS, port_parameters
 from murkscan.calibrate.reach import point_sigma
 from murkscan.optics import back_project, distance_to_sheet, intersect_rays_with_sheet
-from murkscan.types.rig_covariance import RigCovariance
 from murkscan.types.water import Water
 
 from .boards import BOARD
@@ -44,12 +43,7 @@ def test_a_sheet_under_water_measures_as_well_as_it_states(sheet):
     seen = see_stripes(random, rig, 15)
     known = calibrated(rig, random)
     fan = None if sheet is SHEET else replace(FAN, origin=FAN.origin + 2e-3)
-    prior = None
-    if fan is not None:
-        known = replace(known, lasers=rig.lasers)
-        names = [f"laser[0].port.{n}" for n in ("normal[0]", "normal[1]", "distance")]
-        prior = RigCovariance(tuple(names), np.diag([0.01, 0.01, 1e-3]) ** 2)
-    found = calibrate_laser(*as_photos(seen), BOARD, known, fan=fan, prior=prior)
+    found = calibrate_laser(*as_photos(seen), BOARD, known, fan=fan)
     assert not found.is_camera_kept
     pixels = np.concatenate([s.stripe for s in see_stripes(random, rig, 5, noise=0.0)])
     truth, points = (
@@ -67,11 +61,9 @@ def test_a_sheet_under_water_measures_as_well_as_it_states(sheet):
 def test_in_other_water_a_fan_measures_as_well():
     """Fresh water for 35 PSU, and only the water is changed."""
     rig, random = rig_behind(FLAT, FAN), np.random.default_rng(2)
-    known = replace(calibrated(rig, random), lasers=rig.lasers)
-    names = [f"laser[0].port.{n}" for n in ("normal[0]", "normal[1]", "distance")]
-    prior = RigCovariance(tuple(names), np.diag([0.01, 0.01, 1e-3]) ** 2)
+    known = calibrated(rig, random)
     seen = as_photos(see_stripes(random, rig, 12))
-    found = calibrate_laser(*seen, BOARD, known, fan=FAN, prior=prior).rig
+    found = calibrate_laser(*seen, BOARD, known, fan=FAN).rig
     sea = replace(rig, water=Water(20.0, 35.0))
     pixels = np.concatenate([s.stripe for s in see_stripes(random, sea, 5, noise=0.0)])
     truth, points = (

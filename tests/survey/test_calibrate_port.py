@@ -91,7 +91,18 @@ def test_a_tilted_port_is_found_and_written_with_its_covariance(photos, rig):
     record = tomllib.loads(rig.read_text("utf-8"))["calibration"]["port"]
     assert record["views"] == len(TILTS)
     assert "8 views are few" in record["verdict"]
-    assert len(list((rig.parent / "calibrate" / "port").iterdir())) == len(TILTS)
+    drawn = list((rig.parent / "calibrate" / "port").glob("*.found.jpg"))
+    assert len(drawn) == len(TILTS)
+
+
+def test_the_page_shows_each_parameter_the_verdict_and_the_photos(photos, rig):
+    result = calibrate_port_from_photos(photos, BOARD, rig)
+    page = result.page.read_text("utf-8")
+    assert result.page.parent == result.pictures
+    for words in ("camera.port.distance", "8 views are few", "Leaving out one photo", "± 1σ"):
+        assert words in page
+    for picture in result.pictures.glob("*.found.jpg"):
+        assert picture.name in page
 
 
 def test_done_again_it_says_the_same(photos, rig):

@@ -62,6 +62,14 @@ class CameraCalibration:
         """The camera with its covariance, as a rig in air."""
         return self.adjustment.rig
 
+    def sightings(self, board: Chessboard) -> tuple[Sighting, ...]:
+        """Give the views with the board where it was found to be."""
+        flat = board.points()
+        return tuple(
+            Sighting(view.name, view.corners, flat, pose)
+            for view, pose in zip(self.views, self.camera_from_boards, strict=True)
+        )
+
     @property
     def sigma(self) -> Scalars:
         """Standard deviation of each of `PARAMETERS`."""

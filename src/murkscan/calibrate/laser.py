@@ -15,7 +15,7 @@ from .adjust import Adjustment, adjust
 from .board import Chessboard
 from .limits import contradicts_prior, refuse_open_parameters
 from .observed import index_of
-from .parameters import laser_port_parameters, sheet_parameters
+from .parameters import sheet_parameters, window_parameters, window_prior
 from .port import indices_apart, join
 from .sheet import SheetFit, StripeOnBoard, fit_sheet
 from .sighting import Sighting
@@ -75,7 +75,8 @@ def calibrate_laser(
         rig: The rig with its camera, and what it is in.
         number: Number of the laser that is new or replaced.
         fan: The fan as it was measured, to be turned until it fits; None for a flat sheet.
-        prior: What is known beforehand of the fan's port.
+        prior: What is known beforehand of the fan's origin and port; as `window_prior` unless
+            given.
         considered: What is neither found nor exact, such as the water's index.
 
     Raises:
@@ -87,7 +88,8 @@ def calibrate_laser(
     start = fit_sheet(stripes, rig.camera, index)
     laser = start.laser if fan is None else Laser.from_sheet(lay_fan(fan, start.sheet))
     rig = with_laser(rig, laser, number)
-    wanted = (*sheet_parameters(laser, number), *laser_port_parameters(laser, number))
+    prior = window_prior(laser, number) if prior is None else prior
+    wanted = (*sheet_parameters(laser, number), *window_parameters(laser, number))
     known = join(join(rig.covariance, prior), considered)
     apart = indices_apart(known, wanted)
     names = (*wanted, *(n for n in known.names if n not in wanted and n not in apart))

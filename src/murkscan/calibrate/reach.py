@@ -1,11 +1,13 @@
 """What a rig's covariance means where it measures: near, in the middle and far."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from jaxtyping import Float
 
 from ..optics import back_project, intersect_rays_with_sheet, perturb_rig
+from ..optics.uncertainty import common_covariances
 from ..types.arrays import Pixels, Points, Scalars
 from ..types.pose import Pose
 from ..types.rig import Rig
@@ -65,13 +67,14 @@ def point_sigma(rig: Rig, laser: int, depth: float) -> float:
     pixels = _stripe_at(rig, laser, depth)
     if len(pixels) == 0:
         return np.nan
+    return float(np.sqrt(np.nanmean(spread_of_points(rig, laser, pixels) ** 2)))
 
-    def place(changed: Rig) -> Points:
-        return _measure(changed, laser, pixels)
 
-    effects = _effects(rig, place)
-    variance = np.einsum("knc,kl,lnc->n", effects, rig.covariance.matrix, effects)
-    return float(np.sqrt(np.nanmean(variance)))
+def spread_of_points(rig: Rig, laser: int, pixels: Pixels) -> Scalars:
+    """Give the standard deviation of the point at each pixel of a stripe [m]: the common part."""
+    in_camera = replace(rig, covariance=rig.covariance.without("mount."))
+    covariances = common_covariances(pixels, in_camera, laser)
+    return np.sqrt(np.maximum(np.trace(covariances, axis1=1, axis2=2), 0.0))
 
 
 def _effects(rig: Rig, place: Callable[[Rig], Points]) -> Float[np.ndarray, "k n 3"]:

@@ -108,7 +108,7 @@ def _print_camera(result: "CameraResult", rig: Path) -> None:
     )
     _say_photos(result, used=len(found.views))
     say_verdict(str(result.verdict), result.verdict.is_good)
-    say(f"Written to {rig}; the photos with their corners lie in {result.pictures}.")
+    say(f"Written to {rig}; see {result.page}, with every photo and its corners beside it.")
 
 
 def _say_photos(result: "CameraResult", *, used: int) -> None:

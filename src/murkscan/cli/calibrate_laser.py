@@ -25,6 +25,7 @@ def laser(
     kind: Literal["plane", "fan"] = "plane",
     margin_mm: str | None = None,
     laser: int = 0,
+    origin_sigma_mm: float = 2.0,
     port_tilt_sigma_deg: float = 1.0,
     port_distance_sigma_mm: float = 1.0,
     index_sigma: float = 2e-4,
@@ -52,6 +53,8 @@ def laser(
         square on each side unless given.
     laser
         Number of the laser that is new or replaced, from 0.
+    origin_sigma_mm
+        How well it is known beforehand where a fan behind a port starts [mm, 1σ].
     port_tilt_sigma_deg
         How well the direction of a fan's port is known beforehand [degrees, 1σ].
     port_distance_sigma_mm
@@ -64,6 +67,7 @@ def laser(
     chessboard = parse_board(board, square_mm)
     margin = None if margin_mm is None else parse_margin(margin_mm)
     for flag, value in [
+        ("--origin-sigma-mm", origin_sigma_mm),
         ("--port-tilt-sigma-deg", port_tilt_sigma_deg),
         ("--port-distance-sigma-mm", port_distance_sigma_mm),
         ("--index-sigma", index_sigma),
@@ -72,7 +76,11 @@ def laser(
             raise InputError(f"{flag} must be a deviation above 0, got {value:g}.")
     from ..survey.calibrate_laser import FanKnowledge, calibrate_laser_from_photos
 
-    fan = FanKnowledge(math.radians(port_tilt_sigma_deg), port_distance_sigma_mm / 1e3)
+    fan = FanKnowledge(
+        origin_sigma=origin_sigma_mm / 1e3,
+        port_tilt_sigma=math.radians(port_tilt_sigma_deg),
+        port_distance_sigma=port_distance_sigma_mm / 1e3,
+    )
     with progress_bars() as progress:
         result = calibrate_laser_from_photos(
             images,
@@ -148,7 +156,7 @@ def _print_laser(result: "LaserResult", rig: Path) -> None:
             "--margin-mm says how far the paper runs on."
         )
     say_verdict(str(result.verdict), result.verdict.is_good)
-    say(f"Written to {rig}; the photos with their stripes lie in {result.pictures}.")
+    say(f"Written to {rig}; see {result.page}, with every photo and its stripes beside it.")
 
 
 def _point_rows(found: "LaserCalibration") -> list[tuple[str, str]]:

@@ -134,7 +134,7 @@ def _print_port(result: "PortResult", rig: Path) -> None:
     if result.lasers_to_redo:
         numbers = ", ".join(map(str, result.lasers_to_redo))
         say(f"Laser {numbers} was calibrated with the camera as it was; calibrate it again.")
-    say(f"Written to {rig}; the photos with their corners lie in {result.pictures}.")
+    say(f"Written to {rig}; see {result.page}, with every photo and its corners beside it.")
 
 
 def _check_sigma(sigma: float) -> float:

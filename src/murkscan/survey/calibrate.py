@@ -8,12 +8,13 @@ from typing import Any
 
 from ..calibrate.board import Chessboard
 from ..calibrate.camera import CameraCalibration, calibrate_camera
+from ..calibrate.story import Story
 from ..calibrate.verdict import CalibrationVerdict, judge_camera
 from ..errors import EstimationError, InputError
 from ..io.rig_toml import read_tables, save_calibration
 from .board_photos import BoardPhotos
 from .board_views import find_boards
-from .calibrate_drawing import draw_boards
+from .calibrate_drawing import draw_boards, write_page
 from .calibration_record import record_camera, record_setting
 from .progress import Progress, silent
 
@@ -34,6 +35,8 @@ class CameraResult:
     """Photos that could not be read, and why."""
     pictures: Path
     """Folder of the photos with their corners drawn."""
+    page: Path
+    """The page that shows all of it."""
 
 
 def calibrate_camera_from_photos(
@@ -77,7 +80,10 @@ def calibrate_camera_from_photos(
     left_out = tuple(view.name for view in calibration.left_out)
     draw(residuals=dict(residuals), left_out=left_out)
     without = tuple(view.name for view in views if not view.is_found)
-    return CameraResult(calibration, verdict, len(views), without, photos.skipped, folder)
+    adjusted = calibration.adjustment
+    story = Story("Camera", adjusted, calibration.sightings(board), verdict, without)
+    page = write_page(folder, story)
+    return CameraResult(calibration, verdict, len(views), without, photos.skipped, folder, page)
 
 
 def open_photos(path: Path, rig_path: Path, name: str) -> tuple[BoardPhotos, Path]:

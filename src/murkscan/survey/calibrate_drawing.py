@@ -8,7 +8,9 @@ import numpy as np
 from ..calibrate.board import Chessboard, Margin
 from ..calibrate.drawing import draw_board, draw_stripe_on_board, project_outline
 from ..calibrate.sheet import SheetFit, StripeOnBoard
+from ..calibrate.story import Story, write_story
 from ..calibrate.view import BoardView
+from ..io.atomic import replacing
 from ..io.images import write_image
 from ..optics import refractive_index
 from ..types.arrays import Pixels
@@ -16,7 +18,7 @@ from ..types.rig import Rig
 from .board_photos import BoardPhotos
 from .progress import Progress
 
-_SUFFIX = ".found.jpg"
+SUFFIX = ".found.jpg"
 """Ends the names of our drawings, so that nothing else is ever taken for one."""
 _SHEET_TOLERANCE = 2e-3
 """Distance from the sheet at which a stripe point is drawn red [m], where the RMS is lower."""
@@ -44,7 +46,7 @@ def draw_boards(
         if len(off):
             note += f", RMS {np.sqrt(np.mean(np.sum(off**2, axis=1))):.2f} px"
         picture = draw_board(photo.image, view, board, off, note)
-        write_image(folder / f"{view.name}{_SUFFIX}", picture)
+        write_image(folder / f"{view.name}{SUFFIX}", picture)
         progress("draw", number + 1, len(views))
 
 
@@ -86,9 +88,17 @@ def draw_stripes(
             outline=project_outline(board, margin, rig.camera, stripe.camera_from_board, index),
             tolerance=_SHEET_TOLERANCE,
         )
-        write_image(folder / f"{stripe.name}{_SUFFIX}", picture)
+        write_image(folder / f"{stripe.name}{SUFFIX}", picture)
         done += 1
         progress("draw", done, len(stripes))
+
+
+def write_page(folder: Path, story: Story) -> Path:
+    """Write the page of a calibration beside its drawings; give where it is."""
+    path = folder / "index.html"
+    with replacing(path) as aside:
+        aside.write_text(write_story(story, suffix=SUFFIX), "utf-8")
+    return path
 
 
 def _number(items: Sequence[StripeOnBoard]) -> dict[str, int]:
@@ -97,5 +107,5 @@ def _number(items: Sequence[StripeOnBoard]) -> dict[str, int]:
 
 def _clear(folder: Path) -> None:
     """Remove what an earlier calibration drew: it would be taken for this one's."""
-    for file in folder.glob(f"*{_SUFFIX}"):
+    for file in folder.glob(f"*{SUFFIX}"):
         file.unlink()

@@ -11,18 +11,19 @@ import numpy as np
 from ..calibrate.board import Chessboard, Margin
 from ..calibrate.laser import LaserCalibration, calibrate_laser
 from ..calibrate.laser_verdict import judge_laser
-from ..calibrate.parameters import laser_port_parameters
+from ..calibrate.parameters import window_prior
+from ..calibrate.story import Story
 from ..calibrate.verdict import CalibrationVerdict
 from ..errors import EstimationError, InputError, MissingResult
 from ..extract import AbstractExtractor, GrayGravity
 from ..io.rig_toml import parse_rig, read_tables, save_calibration
 from ..types.laser import Fan, Laser
 from ..types.rig import Rig
-from ..types.rig_covariance import RigCovariance, unit_of
+from ..types.rig_covariance import RigCovariance
 from .board_stripes import StripeFinder
 from .board_views import find_boards
 from .calibrate import open_photos
-from .calibrate_drawing import draw_stripes
+from .calibrate_drawing import draw_stripes, write_page
 from .calibration_record import record_adjustment, record_laser, record_setting
 from .calibration_state import snapshot, tables_before
 from .progress import Progress, silent
@@ -32,6 +33,8 @@ from .progress import Progress, silent
 class FanKnowledge:
     """What is known of a fan before the photos are looked at; the rest stands in the rig file."""
 
+    origin_sigma: float = 2e-3
+    """Standard deviation of where the fan starts, within its plane [m]; of effect with a port."""
     port_tilt_sigma: float = float(np.radians(1.0))
     """Standard deviation of the direction of the fan's port [rad]."""
     port_distance_sigma: float = 1e-3
@@ -56,6 +59,8 @@ class LaserResult:
     """Photos that could not be read, and why."""
     pictures: Path
     """Folder of the photos with their stripes drawn."""
+    page: Path
+    """The page that shows all of it."""
 
 
 def calibrate_laser_from_photos(
@@ -125,14 +130,18 @@ def calibrate_laser_from_photos(
     )
     _save(rig_path, calibration, record | {"before": snapshot(tables)}, step)
     draw(rig=calibration.rig, fit=calibration.fit)
+    without = tuple(view.name for view in views if not view.is_found)
+    adjusted = calibration.adjustment
+    story = Story(f"Laser {laser}", adjusted, calibration.sightings, verdict, without, laser)
     return LaserResult(
         calibration=calibration,
         verdict=verdict,
         num_photos=len(views),
-        without_board=tuple(view.name for view in views if not view.is_found),
+        without_board=without,
         without_stripe=tuple(stripe.name for stripe in stripes if len(stripe.pixels) == 0),
         skipped=photos.skipped,
         pictures=folder,
+        page=write_page(folder, story),
     )
 
 
@@ -177,11 +186,13 @@ def _fan_of(rig: Rig, laser: int, rig_path: Path) -> Fan:
 
 
 def _prior(rig: Rig, laser: int, fan: FanKnowledge) -> RigCovariance:
-    names = laser_port_parameters(rig.lasers[laser], laser)
-    sigma = [
-        fan.port_tilt_sigma if unit_of(name) == "rad" else fan.port_distance_sigma for name in names
-    ]
-    return RigCovariance(names, np.diag(np.square(sigma)).reshape(len(names), len(names)))
+    return window_prior(
+        rig.lasers[laser],
+        laser,
+        origin_sigma=fan.origin_sigma,
+        tilt_sigma=fan.port_tilt_sigma,
+        distance_sigma=fan.port_distance_sigma,
+    )
 
 
 def _index(rig: Rig, sigma: float) -> RigCovariance | None:

@@ -11,6 +11,7 @@ from ..calibrate.board import Chessboard
 from ..calibrate.parameters import INTRINSICS
 from ..calibrate.port import PortCalibration, calibrate_port
 from ..calibrate.port_verdict import judge_port
+from ..calibrate.story import Story
 from ..calibrate.verdict import CalibrationVerdict
 from ..calibrate.view import BoardView
 from ..errors import EstimationError, InputError, MissingResult
@@ -20,7 +21,7 @@ from ..types.rig import Rig
 from ..types.rig_covariance import RigCovariance
 from .board_views import find_boards
 from .calibrate import open_photos
-from .calibrate_drawing import draw_boards
+from .calibrate_drawing import draw_boards, write_page
 from .calibration_record import record_adjustment, record_setting
 from .calibration_state import snapshot, tables_before
 from .progress import Progress, silent
@@ -68,6 +69,8 @@ class PortResult:
     """Photos that could not be read, and why."""
     pictures: Path
     """Folder of the photos with their corners drawn."""
+    page: Path
+    """The page that shows all of it."""
     lasers_to_redo: tuple[int, ...]
     """Lasers that were calibrated with the camera as it was."""
 
@@ -129,13 +132,17 @@ def calibrate_port_from_photos(
         )
     )
     draw(residuals=residuals, left_out=calibration.left_out)
+    without = tuple(view.name for view in views if not view.is_found)
+    adjusted = calibration.adjustment
+    story = Story("Camera port", adjusted, calibration.sightings, verdict, without)
     return PortResult(
         calibration=calibration,
         verdict=verdict,
         num_photos=len(views),
-        without_board=tuple(view.name for view in views if not view.is_found),
+        without_board=without,
         skipped=photos.skipped,
         pictures=folder,
+        page=write_page(folder, story),
         lasers_to_redo=redo,
     )
 
