@@ -23,8 +23,9 @@ def data() -> Callable[[str], Path]:
 @pytest.fixture(scope="session")
 def hull(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Give a simulated recording in three parts: frames/, rig.toml, poses.csv, truth/."""
-    from murkscan.simulate import hull_scene
     from murkscan.survey.simulate import simulate_recording
+
+    from .scenes import hull_scene
 
     folder = tmp_path_factory.mktemp("hull")
     simulate_recording(hull_scene(num_frames=130), folder)

@@ -11,10 +11,11 @@ import pytest
 
 import murkscan as ms
 from murkscan.capture import Skip
-from murkscan.simulate import HULL_SPEED
 from murkscan.survey.cloud import build_cloud
 from murkscan.survey.demo import Errors, run_demo
 from murkscan.survey.extract import cut_chunks, extract_recording
+
+from ..scenes import HULL_SPEED
 
 MOTION = ms.ConstantSpeed(HULL_SPEED, "y")
 MADE = [

@@ -21,6 +21,7 @@ _COMMANDS = {
     "mesh": "Make a surface from the cloud.",
     "view": "Draw pictures of the surface.",
     "report": "Write a page on how the scan went.",
+    "simulate": "Make a recording whose truth is known.",
 }
 """Each lies in the file of its name, and is imported when it is called: --help stays instant."""
 

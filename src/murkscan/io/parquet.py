@@ -1,7 +1,9 @@
 """Tables of stripes and profiles: Parquet, one part a chunk of frames."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -76,30 +78,74 @@ def load_profile(path: Path) -> Profile:
     )
 
 
-def save_true_stripe(path: Path, stripe: TrueStripe) -> None:
-    """Write true centres as columns; points are in the world frame.
+@contextmanager
+def writing_true_stripes(path: Path) -> Iterator[Callable[[TrueStripe], None]]:
+    """Write true centres as columns, part by part; points are in the world frame.
+
+    The file appears whole when the context ends, or not at all.
 
     Raises:
         DeviceError: The disk is full or cannot be written.
     """
+    with replacing(path) as aside, ExitStack() as stack:
+        writer: pq.ParquetWriter | None = None
+
+        def write(stripe: TrueStripe) -> None:
+            nonlocal writer
+            table = pa.table(_columns_of_truth(stripe))
+            if writer is None:
+                writer = stack.enter_context(
+                    pq.ParquetWriter(aside, table.schema, **_options(table))
+                )
+            writer.write_table(table)
+
+        write(TrueStripe.concatenate([]))
+        yield write
+
+
+def load_true_stripe(path: Path) -> TrueStripe:
+    """Read what `writing_true_stripes` wrote.
+
+    Raises:
+        FormatError: The file is no such table.
+    """
+    columns = _load(path)
+    return TrueStripe(
+        frame=columns["frame"],
+        laser=columns["laser"],
+        branch=columns["branch"],
+        is_reflected=columns["kind"] == "reflected",
+        pixels=np.stack([columns["u"], columns["v"]], axis=1),
+        points=np.stack([columns["x_m"], columns["y_m"], columns["z_m"]], axis=1),
+        signal=columns["signal"],
+        snr=columns["snr"],
+        crlb=columns["crlb_px"],
+    )
+
+
+def _columns_of_truth(stripe: TrueStripe) -> dict[str, np.ndarray]:
     (u, v), (x, y, z) = stripe.pixels.T, stripe.points.T
-    columns = {"frame": stripe.frame, "laser": stripe.laser, "u": u, "v": v}
-    _save(path, columns | {"x_m": x, "y_m": y, "z_m": z, "signal": stripe.signal})
+    columns = {"frame": stripe.frame, "laser": stripe.laser, "branch": stripe.branch}
+    columns |= {"kind": np.where(stripe.is_reflected, "reflected", "direct")}
+    columns |= {"u": u, "v": v, "x_m": x, "y_m": y, "z_m": z}
+    return columns | {"signal": stripe.signal, "snr": stripe.snr, "crlb_px": stripe.crlb}
 
 
 def _save(path: Path, columns: Mapping[str, np.ndarray]) -> None:
     table = pa.table(dict(columns))
-    floats = [name for name in columns if columns[name].dtype.kind == "f"]
     with replacing(path) as aside:
-        pq.write_table(
-            table,
-            aside,
-            compression="zstd",
-            compression_level=1,
-            use_dictionary=[name for name in columns if name not in floats],
-            use_byte_stream_split=floats,
-            write_page_checksum=True,
-        )
+        pq.write_table(table, aside, **_options(table))
+
+
+def _options(table: pa.Table) -> dict[str, Any]:
+    floats = [field.name for field in table.schema if pa.types.is_floating(field.type)]
+    return {
+        "compression": "zstd",
+        "compression_level": 1,
+        "use_dictionary": [name for name in table.column_names if name not in floats],
+        "use_byte_stream_split": floats,
+        "write_page_checksum": True,
+    }
 
 
 def _load(path: Path) -> "_Columns":
@@ -108,7 +154,11 @@ def _load(path: Path) -> "_Columns":
     except (pa.ArrowInvalid, OSError) as error:
         raise FormatError(f"{path} cannot be read as a table; delete it and run again.") from error
     return _Columns(
-        path, {name: table[name].combine_chunks().to_numpy() for name in table.column_names}
+        path,
+        {
+            name: table[name].combine_chunks().to_numpy(zero_copy_only=False)
+            for name in table.column_names
+        },
     )
 
 

@@ -1,15 +1,21 @@
-"""Make recordings whose truth is known, by plain ray-sheet geometry."""
+"""Make recordings whose truth is known: light through water and glass, as a camera keeps it."""
 
-from .base import AbstractSurface as AbstractSurface
-from .demo import HULL_SPEED as HULL_SPEED
-from .demo import hull_rig as hull_rig
-from .demo import hull_scene as hull_scene
-from .flat_wall import FlatWall as FlatWall
+from .beam import Light as Light
+from .frames import LightImage as LightImage
 from .frames import SimulatedFrame as SimulatedFrame
+from .frames import Simulator as Simulator
 from .frames import simulate_frames as simulate_frames
-from .scene import Light as Light
+from .line_image import LineImage as LineImage
+from .particles import Particles as Particles
 from .scene import Scene as Scene
-from .truth import distance_to_surface as distance_to_surface
-from .truth import sample_mesh as sample_mesh
-from .truth import surface_normals as surface_normals
-from .wigley_hull import WigleyHull as WigleyHull
+from .scene_file import list_scenes as list_scenes
+from .scene_file import load_scene as load_scene
+from .scene_file import parse_scene as parse_scene
+from .scene_file import read_scene as read_scene
+from .sensor import Sensor as Sensor
+from .sensor import as_colour as as_colour
+from .surface import Body as Body
+from .vehicle import Navigation as Navigation
+from .vehicle import Unrest as Unrest
+from .vehicle import drive as drive
+from .vehicle import log_navigation as log_navigation

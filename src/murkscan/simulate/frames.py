@@ -1,31 +1,44 @@
 """Draw the frames of a scene, one after another, each with its truth."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
-from jaxtyping import Float
-from scipy.spatial.transform import Rotation
 
-from ..types.arrays import Pixels, Points, Scalars
+from ..errors import InputError
+from ..types.arrays import Mask, Scalars, SmallNumbers
 from ..types.frame import Frame
-from ..types.pose import Pose
 from ..types.true_stripe import TrueStripe
-from .scene import Light, Scene
-from .stripes import (
-    Crossings,
-    ScanLines,
-    as_pixels,
-    find_crossings,
-    laser_position,
-    trace_scan_lines,
-)
-from .truth import surface_normals
+from .ambient import draw_ambient
+from .information import measure_information
+from .laser_view import LaserView, view_laser
+from .line_image import LineImage, draw_laser
+from .lit_line import LitLine, cast_fan, find_lit_line
+from .scene import Scene
+from .sensor import Picture, expose, sensitivity
+from .snow_image import density_for
 
-_REACH = 6.0
-"""Standard deviations of the stripe beyond which it is dark: below 1e-5 of a grey level."""
-_WIDEST = 4.0
-"""How much wider than across itself the stripe may be along its scan line, at most."""
+_BRIGHTEST = 0.97
+"""Quantile of the stripe's peaks by which the exposure is set."""
+_LOOKED_AT = 9
+"""Frames, spread over the recording, by which the exposure is set."""
+_FEWEST = 8
+"""Scan lines that must show the stripe for a frame to count as lit."""
+
+
+@dataclass(frozen=True, eq=False)
+class LightImage:
+    """All light of one frame, noise-free, after all blur; rows are v of the full frame."""
+
+    lasers: tuple[LineImage, ...]
+    """What each laser lights [W/m²/sr]."""
+    ambient: Picture
+    """What would be seen without lasers [W/m²/sr]."""
+
+    @property
+    def total(self) -> Picture:
+        """The sum [W/m²/sr]."""
+        return sum((laser.total for laser in self.lasers), self.ambient)
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,97 +47,190 @@ class SimulatedFrame:
 
     frame: Frame
     stripe: TrueStripe
+    light: LightImage
 
 
-def simulate_frames(scene: Scene, start: int = 0) -> Iterator[SimulatedFrame]:
+@dataclass(frozen=True, eq=False)
+class Simulator:
+    """A scene made ready: what stays the same from frame to frame."""
+
+    scene: Scene
+    lasers: tuple[LaserView, ...]
+    electrons: Picture
+    """Electrons that 1 W/m²/sr makes in each pixel."""
+    snow_density: tuple[float, ...]
+    """Particles that each laser's sheet may cut [1/m³]."""
+
+    @classmethod
+    def of(cls, scene: Scene) -> "Simulator":
+        """Make a scene ready.
+
+        Raises:
+            InputError: The sheet never meets the object where the camera sees it.
+        """
+        lasers = tuple(view_laser(scene, number) for number in range(len(scene.rig.lasers)))
+        shown = _lit_frames(scene, lasers) if lasers else [0]
+        lights = [[draw_laser(scene, laser, number) for laser in lasers] for number in shown]
+        densities = tuple(
+            density_for(scene.particles, laser, light.mask, _reach(light))
+            for laser, light in zip(lasers, lights[len(lights) // 2], strict=True)
+        )
+        return cls(scene, lasers, _electrons(scene, lasers, lights), densities)
+
+    def draw_light(self, number: int) -> LightImage:
+        """Draw all light of a frame."""
+        lasers = tuple(
+            draw_laser(self.scene, laser, number, snow_density=density)
+            for laser, density in zip(self.lasers, self.snow_density, strict=True)
+        )
+        ambient = np.zeros_like(self.electrons)
+        if self.scene.light.ambient > 0:
+            ambient = draw_ambient(self.scene, number)
+        return LightImage(lasers, ambient)
+
+    def draw_frame(self, number: int) -> SimulatedFrame:
+        """Draw a frame, with its noise and its truth; it depends on no other frame."""
+        light = self.draw_light(number)
+        electrons = light.total * self.electrons
+        noise = np.random.default_rng([self.scene.seed, number])
+        image = expose(self.scene.sensor, self.scene.as_field(electrons, number), noise)
+        frame = Frame(
+            image,
+            number,
+            float(self.scene.times[number]),
+            self.scene.first_row(number),
+            self.scene.row_step,
+        )
+        return SimulatedFrame(frame, self._tell_truth(light, electrons, number), light)
+
+    def _tell_truth(self, light: LightImage, electrons: Picture, number: int) -> TrueStripe:
+        full = self.scene.sensor.is_full(electrons)
+        variance = np.where(full, np.inf, self.scene.sensor.variance(electrons))
+        parts = [
+            self._truth_of(laser, light.lasers[laser], variance, number)
+            for laser in range(len(self.lasers))
+        ]
+        return TrueStripe.concatenate(parts)
+
+    def _truth_of(self, laser: int, light: LineImage, variance: Picture, number: int) -> TrueStripe:
+        """Give the true centres of one laser, in a frame's scan lines, with what is known."""
+        first, step = self.scene.first_row(number), self.scene.row_step
+        line, widths, reflected = _join(light)
+        pictures = [light.stripe * self.electrons, light.slope * self.electrons, variance]
+        told = np.ones(self.scene.rig.camera.size[0], bool)
+        if self.lasers[laser].scan_lines.laser.axis == "y":
+            pictures = [picture.T for picture in pictures]
+            told = np.arange(self.scene.rig.camera.size[1]) % step == first
+        else:
+            kept = line.lines % step == first
+            line, widths, reflected = line[kept], widths[kept], reflected[kept]
+        stripe, slope, variance = pictures
+        known = measure_information(
+            line, widths, stripe=stripe, slope=slope, variance=variance, told=told
+        )
+        return TrueStripe(
+            frame=np.full(len(line), number, np.uint32),
+            laser=np.full(len(line), laser, np.uint8),
+            branch=_number_branches(line),
+            is_reflected=reflected,
+            pixels=self.lasers[laser].scan_lines.as_pixels(line.lines, line.positions),
+            points=self.scene.pose(number) @ line.points,
+            signal=(known.peak * self.scene.sensor.grey_per_electron).astype(np.float32),
+            snr=known.snr,
+            crlb=known.crlb,
+        )
+
+
+def simulate_frames(
+    scene: Scene, start: int = 0, stop: int | None = None
+) -> Iterator[SimulatedFrame]:
     """Draw the frames of a scene in order, each when it is asked for.
-
-    The stripe is a Gaussian along its scan line, as wide as makes it `scene.light.width` across
-    itself; its peak follows Lambert's cosine law for light from the laser. Frames are 8 bit. A
-    pixel shows the value at its centre.
 
     Args:
         scene: What is recorded, and how.
         start: Index of the first frame wanted; it looks the same whatever the start is.
+        stop: Index behind the last frame wanted; None: all.
+
+    Raises:
+        InputError: The sheet never meets the object where the camera sees it.
     """
-    lasers = [trace_scan_lines(scene.rig.camera, laser) for laser in scene.rig.lasers]
-    for index in range(start, len(scene.times)):
-        world_from_camera = _pose_at(scene, index)
-        width, height = scene.rig.camera.size
-        light = np.full((height, width), scene.light.ambient, np.float32)
-        parts = []
-        for number, scan_lines in enumerate(lasers):
-            found = find_crossings(scene.surface, world_from_camera, scan_lines)
-            points = world_from_camera @ found.points
-            peaks, slopes = _shade(scene, world_from_camera, scan_lines, found, points)
-            _add_stripe(light, scan_lines, found, peaks, slopes, scene.light)
-            pixels = as_pixels(scan_lines.laser.axis, found.lines, found.positions)
-            parts.append(_as_truth(index, number, pixels, points, peaks))
-        frame = Frame(_expose(light, scene, index), index, float(scene.times[index]))
-        yield SimulatedFrame(frame, TrueStripe.concatenate(parts))
+    simulator = Simulator.of(scene)
+    for number in range(start, len(scene) if stop is None else min(stop, len(scene))):
+        yield simulator.draw_frame(number)
 
 
-def _pose_at(scene: Scene, index: int) -> Pose:
-    now = scene.trajectory.at(scene.times[index : index + 1])
-    rotation = Rotation.from_quat(now.quaternions[0], scalar_first=True)
-    return Pose(rotation.as_matrix(), now.positions[0])
-
-
-def _shade(
-    scene: Scene, world_from_camera: Pose, scan_lines: ScanLines, found: Crossings, points: Points
-) -> tuple[Scalars, Scalars]:
-    """Give the stripe's peak [grey levels], and its slope: pixels along a scan line to the next."""
-    axis = "xy".index(scan_lines.laser.axis)
-    normals = surface_normals(scene.surface, points[:, 0], points[:, 1])
-    normals = normals @ world_from_camera.rotation  # world to camera axes
-    to_laser = laser_position(scan_lines.laser) - found.points
-    cosine = np.einsum("ij,ij->i", normals, to_laser) / np.linalg.norm(to_laser, axis=1)
-    x, y, z = found.points.T
-    tangent = np.cross(normals, scan_lines.laser.as_plane().normal)
-    moved = scan_lines.camera.focal_length * (
-        tangent[:, :2] - np.stack([x, y], axis=1) / z[:, None] * tangent[:, 2:]
+def _lit_frames(scene: Scene, lasers: tuple[LaserView, ...]) -> list[int]:
+    """Find some frames, spread over the recording, in which the camera sees a stripe."""
+    spread = np.unique(np.linspace(0, len(scene) - 1, _LOOKED_AT).astype(int)).tolist()
+    shown = [number for number in spread if _is_lit(scene, lasers, number)]
+    if shown:
+        return shown
+    for number in range(len(scene)):
+        if _is_lit(scene, lasers, number):
+            return [number]
+    raise InputError(
+        f"The laser's sheet never meets the object where the camera sees it, in {len(scene)} "
+        "frames: move object.position_mm, turn rig.laser, or change motion."
     )
-    with np.errstate(divide="ignore", invalid="ignore"):
-        slope = moved[:, axis] / moved[:, 1 - axis]
-    return scene.light.brightness * np.clip(cosine, 0, 1), np.nan_to_num(slope)
 
 
-def _add_stripe(
-    light: Float[np.ndarray, "h w"],
-    scan_lines: ScanLines,
-    found: Crossings,
-    peaks: Scalars,
-    slopes: Scalars,
-    how: Light,
-) -> None:
-    """Add the stripe to the light, a Gaussian in each scan line."""
-    lines = light.T if scan_lines.laser.axis == "y" else light
-    sigma = how.width * np.minimum(np.hypot(1.0, slopes), _WIDEST)
-    if not len(sigma):
-        return
-    # Only the pixels near the centres: a window as wide as the widest stripe needs.
-    reach = int(np.ceil(_REACH * sigma.max()))
-    pixels = np.rint(found.positions).astype(int)[:, None] + np.arange(-reach, reach + 1)
-    value = np.exp(-0.5 * ((pixels - found.positions[:, None]) / sigma[:, None]) ** 2)
-    inside = (pixels >= 0) & (pixels < lines.shape[1])
-    rows = np.broadcast_to(found.lines[:, None], pixels.shape)
-    lines[rows[inside], pixels[inside]] += (peaks[:, None] * value)[inside]
+def _is_lit(scene: Scene, lasers: tuple[LaserView, ...], number: int) -> bool:
+    """Tell whether the camera sees the stripe of any laser in a frame."""
+    caster, pose = scene.surroundings.caster, scene.pose(number)
+    for laser in lasers:
+        fall = cast_fan(laser.beam, laser.scan_lines, caster, pose)
+        if np.count_nonzero(fall.face >= 0) < _FEWEST:
+            continue
+        if len(find_lit_line(laser.beam, laser.scan_lines, caster, pose, fall)) >= _FEWEST:
+            return True
+    return False
 
 
-def _expose(light: Float[np.ndarray, "h w"], scene: Scene, index: int) -> np.ndarray:
-    """Add the noise of this frame and round to 8 bit."""
-    if scene.light.noise > 0:
-        # A generator a frame, so that a frame does not depend on those before it.
-        noise = np.random.default_rng([scene.seed, index])
-        light = light + scene.light.noise * noise.standard_normal(light.shape, np.float32)
-    return np.clip(np.rint(light), 0, 255).astype(np.uint8)
+def _reach(light: LineImage) -> float:
+    """Give how far away the farthest true centre is [m]."""
+    return float(np.linalg.norm(light.line.points, axis=1).max(initial=0.0))
 
 
-def _as_truth(index: int, laser: int, pixels: Pixels, points: Points, peaks: Scalars) -> TrueStripe:
-    return TrueStripe(
-        frame=np.full(len(pixels), index, np.uint32),
-        laser=np.full(len(pixels), laser, np.uint8),
-        pixels=pixels,
-        points=points,
-        signal=peaks.astype(np.float32),
+def _electrons(
+    scene: Scene, lasers: tuple[LaserView, ...], lights: list[list[LineImage]]
+) -> Picture:
+    """Give the electrons that 1 W/m²/sr makes in each pixel."""
+    camera, sensor = scene.rig.camera, scene.sensor
+    share = sensitivity(sensor, camera.size, camera.focal_length)
+    if sensor.peak_grey is None:
+        return share * np.float32(sensor.electrons_per_radiance(scene.rig.wavelength))
+    if lasers:
+        peaks = [
+            (light.stripe * share).max(axis="yx".index(laser.scan_lines.laser.axis))[
+                light.line.lines
+            ]
+            for frame in lights
+            for laser, light in zip(lasers, frame, strict=True)
+        ]
+    else:
+        peaks = [(draw_ambient(scene, 0) * share).ravel()]
+    brightest = float(np.quantile(np.concatenate(peaks), _BRIGHTEST))
+    return share * np.float32(sensor.peak_grey / sensor.grey_per_electron / brightest)
+
+
+def _join(light: LineImage) -> tuple[LitLine, Scalars, Mask]:
+    """Put the true centres of the second line behind those of the first, sorted by scan line."""
+    line = LitLine(
+        *(
+            np.concatenate([getattr(light.line, column.name), getattr(light.second, column.name)])
+            for column in fields(LitLine)
+        )
     )
+    usual = float(np.median(light.widths)) if len(light.widths) else 1.0
+    widths = np.concatenate([light.widths, np.full(len(light.second), usual)])
+    reflected = np.arange(len(line)) >= len(light.line)
+    order = np.lexsort([reflected, line.lines])
+    return line[order], widths[order], reflected[order]
+
+
+def _number_branches(line: LitLine) -> SmallNumbers:
+    """Number the centres of each scan line, which lie one after another."""
+    starts = np.flatnonzero(np.concatenate([[True], np.diff(line.lines) != 0])[: len(line)])
+    counts = np.diff(np.concatenate([starts, [len(line)]]))
+    number = np.arange(len(line)) - np.repeat(starts, counts)
+    return np.minimum(number, 255).astype(np.uint8)

@@ -1,49 +1,105 @@
-"""What is recorded, by which rig, along which way, in which light."""
+"""What is recorded, by which rig, along which way, in which water and light."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
 
 from ..errors import InputError
+from ..optics import refractive_index
+from ..optics.medium import Medium
 from ..types.arrays import Scalars
+from ..types.pose import Pose
 from ..types.rig import Rig
 from ..types.trajectory import Trajectory
-from .base import AbstractSurface
+from .beam import Light
+from .particles import Particles
+from .sensor import Sensor
+from .surface import Body, Surroundings
+from .vehicle import Navigation
 
-
-@dataclass(frozen=True)
-class Light:
-    """How bright and how wide the stripe is, and what else the sensor adds."""
-
-    brightness: float = 215.0
-    """Peak of the stripe where the laser meets the surface at a right angle [grey levels]."""
-    width: float = 2.0
-    """Standard deviation of the stripe across itself [px]."""
-    ambient: float = 6.0
-    """Grey level where there is no stripe."""
-    noise: float = 0.0
-    """Standard deviation of one pixel's white noise [grey levels]."""
-
-    def __post_init__(self) -> None:
-        """Refuse a stripe without width and negative light."""
-        if self.width <= 0 or min(self.brightness, self.ambient, self.noise) < 0:
-            raise InputError(
-                f"A stripe needs a width above 0 and light not below 0, got a width of "
-                f"{self.width:g} px, brightness {self.brightness:g}, ambient {self.ambient:g} and "
-                f"noise {self.noise:g} grey levels."
-            )
+_FAR = 3.0
+"""How far from all objects the camera may go, in sizes of the scene or nearest distances."""
 
 
 @dataclass(frozen=True, eq=False)
 class Scene:
     """All that a simulated recording depends on; the same scene gives the same bytes."""
 
-    surface: AbstractSurface
-    """The object, in the world frame."""
+    bodies: tuple[Body, ...]
+    """What stands there."""
     rig: Rig
-    """The camera and its lasers."""
+    """The camera and its lasers; its water is what bends the light."""
     trajectory: Trajectory
     """world_from_camera."""
     times: Scalars
-    """When each frame is exposed [s], within the trajectory."""
+    """When each frame is exposed [s], within the trajectory; each field, where interlaced."""
+    medium: Medium | None = None
+    """What the water does to light; None: it is as clear as air."""
     light: Light = field(default_factory=Light)
+    sensor: Sensor = field(default_factory=Sensor)
+    particles: Particles = field(default_factory=Particles)
+    glow: bool = True
+    """Whether the sheet's own glow is drawn."""
+    forward_scattering: bool = True
+    """Whether the water spreads sheet and picture."""
+    navigation: Navigation | None = None
+    """What the vehicle's own log is like; None: there is none."""
     seed: int = 0
-    """Where the noise starts."""
+    """Where noise and particles start."""
+
+    def __post_init__(self) -> None:
+        """Refuse a scene without light or without frames."""
+        if not self.rig.lasers and self.light.ambient == 0:
+            raise InputError("A scene needs light: add rig.laser, or light.ambient_w_m2.")
+        if len(self.times) == 0:
+            raise InputError("motion.frames must be at least 1.")
+
+        self._check_way()
+
+    def _check_way(self) -> None:
+        """Refuse a way that leads out of the scene."""
+        vertices = self.surroundings.mesh.vertices
+        low, high = vertices.min(axis=0), vertices.max(axis=0)
+        places = self.trajectory.at(self.times).positions
+        away = np.linalg.norm(np.maximum(np.maximum(low - places, places - high), 0.0), axis=1)
+        limit = _FAR * max(float(away.min()), float(np.linalg.norm(high - low)))
+        if away.max() > limit:
+            first = int(np.argmax(away > limit))
+            raise InputError(
+                f"The way leaves the scene: in frame {first} of {len(self)} the camera is "
+                f"{away[first]:.3g} m from the nearest object. Lower motion.speed_mm_s or "
+                "motion.frames, or check the unit of motion.poses (m)."
+            )
+
+    def __len__(self) -> int:
+        """Count the frames; fields are counted."""
+        return len(self.times)
+
+    @property
+    def index(self) -> float:
+        """Refractive index of the water."""
+        return refractive_index(self.rig.water, self.rig.wavelength)
+
+    @cached_property
+    def surroundings(self) -> Surroundings:
+        """All bodies as one."""
+        return Surroundings(self.bodies)
+
+    def pose(self, number: int) -> Pose:
+        """Give world_from_camera of a frame."""
+        now = self.trajectory.at(self.times[number : number + 1])
+        return Pose.from_quaternion(now.quaternions, now.positions[0])
+
+    def first_row(self, number: int) -> int:
+        """Give the row of the full frame that a frame's row 0 shows; the upper field is first."""
+        return number % 2 if self.sensor.interlaced else 0
+
+    @property
+    def row_step(self) -> int:
+        """Give the rows of the full frame from one row of a frame to the next."""
+        return 2 if self.sensor.interlaced else 1
+
+    def as_field(self, picture: np.ndarray, number: int) -> np.ndarray:
+        """Give the rows of a full picture that a frame shows."""
+        return picture[self.first_row(number) :: self.row_step]

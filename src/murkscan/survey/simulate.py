@@ -1,44 +1,161 @@
-"""Write a simulated recording, its rig and its truth."""
+"""Write a simulated recording, its rig, its poses and its truth."""
 
+from collections import deque
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from ..io.atomic import replacing
 from ..io.images import write_image
 from ..io.mesh_files import save_mesh
-from ..io.parquet import save_true_stripe
+from ..io.parquet import writing_true_stripes
 from ..io.poses import save_poses
 from ..io.rig_toml import save_rig
 from ..io.times_csv import write_times
-from ..simulate import Scene, sample_mesh, simulate_frames
-from ..types.true_stripe import TrueStripe
+from ..io.video import writing_video
+from ..simulate import Scene, SimulatedFrame, Simulator, as_colour, log_navigation
+from ..types.trajectory import Trajectory
 from .progress import Progress, silent
 
-_MESH_SPACING = 0.002
-"""Spacing of the truth's mesh [m]: fine enough to look at; distances are taken to the surface."""
+_WORKERS = 2
+"""Frames that are drawn at once: drawing waits for its own Python half of the time."""
+_AHEAD = 4
+"""Frames that may be ready before they are written: memory stays bounded."""
+_PART = 64
+"""Frames whose truth is written at once."""
+
+Keep = Callable[[np.ndarray, float], None]
+"""Keeps one picture and its time [s]."""
 
 
-def simulate_recording(scene: Scene, out: Path, *, progress: Progress = silent) -> None:
-    """Write frames/ with their times, rig.toml, poses.csv, and truth/ with stripes and mesh.
+@dataclass(frozen=True)
+class SimulatedRecording:
+    """What was written."""
+
+    recording: Path
+    """The folder of pictures, or the video."""
+    num_frames: int
+    """Frames, fields counted."""
+    num_centres: int
+    """True centres."""
+
+
+def simulate_recording(
+    scene: Scene, out: Path, *, text: str | None = None, progress: Progress = silent
+) -> SimulatedRecording:
+    """Write frames/ or recording.mkv, rig.toml, poses.csv, and truth/.
+
+    poses.csv holds the true poses at the frames' own times, of the vehicle where the rig has a
+    mount; navigation.csv what the vehicle's log says, where the scene has one.
 
     Args:
         scene: What is recorded, by which rig, along which way.
         out: The folder; files that are there are replaced.
+        text: The scene file's text, to be kept with the truth.
         progress: Told of each frame.
 
     Raises:
+        InputError: The sheet never meets the object, or the way leaves the scene.
         DeviceError: The disk is full.
     """
-    times: dict[str, float] = {}
-    stripes: list[TrueStripe] = []
-    for simulated in simulate_frames(scene):
-        name = f"{simulated.frame.index:06d}.png"
-        write_image(out / "frames" / name, simulated.frame.image)
-        times[name] = simulated.frame.time
-        stripes.append(simulated.stripe)
-        progress("simulate", len(times), len(scene.times))
-    write_times(out / "frames" / "times.csv", times)
+    simulator = Simulator.of(scene)
+    _write_rig_and_way(scene, out)
+    centres = 0
+    with (
+        _keeping(scene, out) as (recording, keep),
+        writing_true_stripes(out / "truth" / "stripes.parquet") as tell,
+    ):
+        stripes, fields = [], []
+        for frame in _draw_ahead(simulator):
+            fields.append(frame.frame.image)
+            if len(fields) == scene.row_step:
+                first = frame.frame.index + 1 - scene.row_step
+                keep(_weave(scene, fields), float(scene.times[first]))
+                fields.clear()
+            stripes.append(frame.stripe)
+            centres += len(frame.stripe)
+            if len(stripes) == _PART or frame.frame.index + 1 == len(scene):
+                tell(frame.stripe.concatenate(stripes))
+                stripes.clear()
+            progress("simulate", frame.frame.index + 1, len(scene))
+    save_mesh(out / "truth" / "mesh.ply", scene.surroundings.mesh)
+    if text is not None:
+        with replacing(out / "truth" / "scene.toml") as aside:
+            aside.write_text(text, "utf-8")
+    return SimulatedRecording(recording, len(scene), centres)
+
+
+def _draw_ahead(simulator: Simulator) -> Iterator[SimulatedFrame]:
+    """Draw the frames on several threads, and give them in order."""
+    waiting: deque[Future[SimulatedFrame]] = deque()
+    with ThreadPoolExecutor(_WORKERS) as pool:
+        try:
+            for number in range(len(simulator.scene)):
+                waiting.append(pool.submit(simulator.draw_frame, number))
+                if len(waiting) > _AHEAD:
+                    yield waiting.popleft().result()
+            while waiting:
+                yield waiting.popleft().result()
+        finally:
+            for future in waiting:
+                future.cancel()
+
+
+def _write_rig_and_way(scene: Scene, out: Path) -> None:
     save_rig(out / "rig.toml", scene.rig)
-    save_poses(out / "poses.csv", scene.trajectory.at(np.asarray(scene.times)))
-    save_true_stripe(out / "truth" / "stripes.parquet", TrueStripe.concatenate(stripes))
-    save_mesh(out / "truth" / "mesh.ply", sample_mesh(scene.surface, spacing=_MESH_SPACING))
+    save_poses(out / "poses.csv", _as_logged(scene, scene.trajectory.at(scene.times)))
+    if scene.navigation is not None:
+        way = _as_logged(scene, scene.trajectory)
+        save_poses(out / "navigation.csv", log_navigation(scene.navigation, way, seed=scene.seed))
+
+
+def _as_logged(scene: Scene, way: Trajectory) -> Trajectory:
+    """Give poses of the vehicle, which is what logs hold, where the camera sits on one."""
+    mount = scene.rig.vehicle_from_camera
+    return way if mount is None else way.follow_mount(mount.inverse())
+
+
+@contextmanager
+def _keeping(scene: Scene, out: Path) -> Iterator[tuple[Path, Keep]]:
+    """Keep pictures as the scene's sensor says."""
+    sensor, pictures = scene.sensor, scene.times[:: scene.row_step]
+    if sensor.codec != "png":
+        path = out / "recording.mkv"
+        rate = 1 / float(np.median(np.diff(pictures))) if len(pictures) > 1 else 25.0
+        with writing_video(
+            path,
+            scene.rig.camera.size,
+            rate=rate,
+            codec=sensor.codec,
+            crf=sensor.crf,
+            interlaced=sensor.interlaced,
+            is_colour=sensor.colour != "mono",
+        ) as write:
+            yield path, write
+        return
+    folder, times = out / "frames", dict[str, float]()
+
+    def keep(picture: np.ndarray, time: float) -> None:
+        name = f"{len(times):06d}.png"
+        write_image(folder / name, picture)
+        times[name] = time
+
+    yield folder, keep
+    write_times(folder / "times.csv", times)
+
+
+def _weave(scene: Scene, fields: list[np.ndarray]) -> np.ndarray:
+    """Put the rows of two fields between each other, or fill in a mosaic's colours."""
+    if scene.sensor.colour != "mono":
+        return as_colour(fields[0], scene.sensor.colour)
+    if len(fields) == 1:
+        return fields[0]
+    width, height = scene.rig.camera.size
+    picture = np.empty((height, width), fields[0].dtype)
+    for parity, field in enumerate(fields):
+        picture[parity::2] = field
+    return picture

@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from .arrays import FrameNumbers, Pixels, Points, Ratios, SmallNumbers
+from .arrays import FrameNumbers, Mask, Pixels, Points, Ratios, SmallNumbers
 
 
 @dataclass(frozen=True, eq=False)
@@ -16,12 +16,21 @@ class TrueStripe:
     """Index of the frame."""
     laser: SmallNumbers
     """Number of the laser in the rig."""
+    branch: SmallNumbers
+    """Number of this centre among those of its scan line, from 0: first those of the line itself,
+    by their place."""
+    is_reflected: Mask
+    """Whether it belongs to the second line, which gloss throws."""
     pixels: Pixels
     """Projection of the sheet's middle on the surface [px]."""
     points: Points
     """The same on the surface, in the world frame [m]."""
     signal: Ratios
     """Peak of the stripe [grey levels]."""
+    snr: Ratios
+    """Signal-to-noise ratio of the stripe in its scan line."""
+    crlb: Ratios
+    """Standard deviation that no unbiased estimate from that scan line alone can beat [px]."""
 
     def __len__(self) -> int:
         """Count the centres."""
@@ -30,8 +39,9 @@ class TrueStripe:
     @classmethod
     def concatenate(cls, stripes: Sequence["TrueStripe"]) -> "TrueStripe":
         """Put true stripes one after another; none make one of length 0."""
-        number, place = np.zeros(0, np.uint32), np.zeros((0, 3))
-        empty = cls(number, number.astype(np.uint8), place[:, :2], place, np.zeros(0, np.float32))
+        small, ratio, place = np.zeros(0, np.uint8), np.zeros(0, np.float32), np.zeros((0, 3))
+        frame, mask = np.zeros(0, np.uint32), np.zeros(0, bool)
+        empty = cls(frame, small, small, mask, place[:, :2], place, ratio, ratio, ratio)
         parts = [empty, *stripes]
         return cls(
             *(np.concatenate([getattr(part, c.name) for part in parts]) for c in fields(cls))

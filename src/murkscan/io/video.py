@@ -1,0 +1,100 @@
+"""Videos written from pictures, through FFmpeg."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from fractions import Fraction
+from pathlib import Path
+from typing import Any, Literal
+
+import av
+import numpy as np
+
+from ..errors import DeviceError, InputError
+from .atomic import replacing
+
+VideoCodec = Literal["ffv1", "h264"]
+_TICKS = 90_000
+"""Ticks a second of the times; the container rounds them to milliseconds."""
+
+
+@contextmanager
+def writing_video(
+    path: Path,
+    size: tuple[int, int],
+    *,
+    rate: float,
+    codec: VideoCodec,
+    crf: int = 23,
+    interlaced: bool = False,
+    is_colour: bool = False,
+) -> Iterator[Callable[[np.ndarray, float], None]]:
+    """Write pictures as a Matroska video that appears whole or not at all.
+
+    Args:
+        path: Where the video shall be.
+        size: Width and height of the pictures [px].
+        rate: Pictures a second, for players; each picture has its own time.
+        codec: FFV1, which loses nothing, or H.264, whose luma is the grey level.
+        crf: Quality of H.264: 0 is best, 51 worst.
+        interlaced: Whether pictures hold two fields, the upper one first.
+        is_colour: Whether pictures are red, green, blue rather than grey.
+
+    Yields:
+        A function that adds a picture (8 bit, h w or h w 3) and its time [s].
+
+    Raises:
+        InputError: H.264 is asked to keep pictures of odd width or height.
+        DeviceError: The disk is full or cannot be written.
+
+    References:
+        ITU-T H.264; RFC 9043 (FFV1).
+    """
+    if codec == "h264" and (size[0] % 2 or size[1] % 2):
+        raise InputError(
+            f"sensor.codec h264 keeps pictures of even width and height, not {size[0]} x {size[1]}."
+        )
+    with replacing(path) as aside, _open(path, aside) as container:
+        stream = container.add_stream(
+            {"ffv1": "ffv1", "h264": "libx264"}[codec], rate=Fraction(rate).limit_denominator(1001)
+        )
+        stream.width, stream.height = size
+        stream.pix_fmt = "yuv420p" if codec == "h264" else "bgr0" if is_colour else "gray"
+        stream.time_base = stream.codec_context.time_base = Fraction(1, _TICKS)
+        stream.codec_context.options = _options(codec, crf, interlaced)
+
+        def write(picture: np.ndarray, time: float) -> None:
+            frame = _as_frame(picture, stream.pix_fmt)
+            frame.pts, frame.time_base = round(time * _TICKS), Fraction(1, _TICKS)
+            container.mux(stream.encode(frame))
+
+        yield write
+        container.mux(stream.encode())
+
+
+@contextmanager
+def _open(path: Path, aside: Path) -> Iterator[Any]:
+    try:
+        with av.open(str(aside), "w", format="matroska") as container:
+            yield container
+    except av.error.FFmpegError as error:
+        raise DeviceError(f"Cannot write {path}: {error.strerror}. Make room.") from error
+
+
+def _options(codec: VideoCodec, crf: int, interlaced: bool) -> dict[str, str]:
+    if codec == "ffv1":
+        return {"level": "3", "slices": "4", "slicecrc": "1", "g": "1"}
+    # One thread, so that the same pictures give the same bytes on every machine.
+    options = {"crf": str(crf), "preset": "medium", "threads": "1"}
+    return options | ({"flags": "+ilme+ildct", "x264-params": "tff=1"} if interlaced else {})
+
+
+def _as_frame(picture: np.ndarray, pix_fmt: str) -> Any:
+    if picture.ndim == 3:
+        return av.VideoFrame.from_ndarray(np.ascontiguousarray(picture), "rgb24").reformat(
+            format=pix_fmt
+        )
+    if pix_fmt == "gray":
+        return av.VideoFrame.from_ndarray(np.ascontiguousarray(picture), "gray")
+    # The grey levels themselves are the luma: a conversion would squeeze them.
+    flat = np.full((picture.shape[0] // 2, picture.shape[1]), 128, np.uint8)
+    return av.VideoFrame.from_ndarray(np.concatenate([picture, flat]), "yuv420p")

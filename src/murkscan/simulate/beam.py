@@ -1,0 +1,146 @@
+"""The laser's light on its way through the water: where it goes, how thick and how strong it is."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Float
+
+from ..errors import InputError
+from ..optics import locate_on_fan, trace_fan
+from ..types.arrays import Directions, Points, Scalars
+from ..types.laser import Fan, FanCoordinates, Laser
+from ..types.rays import Rays
+
+_HALF_ANGLE = math.radians(45)
+"""Half the opening of a laser that is given as a plane and tells none [rad]."""
+_NUM_ANGLES = 4001
+"""Rays by which the fan's spreading is tabled."""
+_EDGE = 0.02
+"""Share of a Powell fan's half width over which it fades at its ends."""
+
+
+@dataclass(frozen=True)
+class Light:
+    """The laser's light, and what else is lit.
+
+    References:
+        Powell, Design of a laser beam line expander, Applied Optics 26(17), 1987 (light spread
+        evenly along a line); ISO 11146-1 (beam width and divergence, full, at 1/e²).
+    """
+
+    power: float = 0.03
+    """Power of each laser's fan [W]."""
+    divergence: float = 1.4e-3
+    """Full angle by which the sheet thickens [rad]."""
+    waist: float = 1e-3
+    """Thickness of the sheet at its source, full width at 1/e² [m]."""
+    ambient: float = 0.0
+    """Irradiance by daylight or lamps, in the laser's colour, on every surface [W/m²]."""
+
+    def __post_init__(self) -> None:
+        """Refuse light that cannot be."""
+        if not self.power > 0:
+            raise InputError(f"light.power_mw must be above 0, got {self.power * 1e3:g}.")
+        if not (self.waist >= 0 and self.divergence >= 0 and self.waist + self.divergence > 0):
+            raise InputError(
+                f"light.waist_mm and light.divergence_mrad must not be below 0, nor both 0, got "
+                f"{self.waist * 1e3:g} and {self.divergence * 1e3:g}."
+            )
+        if not self.ambient >= 0:
+            raise InputError(f"light.ambient_w_m2 must not be below 0, got {self.ambient:g}.")
+
+    def thickness(self, ranges: Scalars) -> Scalars:
+        """Give the sheet's thickness [m], one standard deviation of its Gaussian profile."""
+        return np.hypot(self.waist, self.divergence * ranges) / 4
+
+
+@dataclass(frozen=True, eq=False)
+class Beam:
+    """One laser's light in the camera frame, outside its port."""
+
+    fan: Fan
+    light: Light
+    index: float
+    """Refractive index of the water."""
+
+    @classmethod
+    def of(cls, laser: Laser, light: Light, index: float) -> "Beam":
+        """Give a laser its light; one known by its plane alone shines from where that plane is.
+
+        Such a plane's fan starts where the sheet cuts the camera's axis, as in the paper's
+        figure 3, and opens by 45 degrees to both sides.
+        """
+        if isinstance(laser.sheet, Fan):
+            return cls(laser.sheet, light, index)
+        plane, at = laser.sheet, "xy".index(laser.axis)
+        axes = np.eye(3)
+        along = axes[1 - at] - (axes[1 - at] @ plane.normal) * plane.normal
+        ahead = np.cross(along, plane.normal)
+        ahead *= np.sign(ahead[2])
+        baseline, _ = laser.as_baseline_angle()
+        return cls(Fan.spread(-baseline * axes[at], ahead, along, _HALF_ANGLE), light, index)
+
+    def rays(self, angles: Scalars) -> Rays:
+        """Follow the fan's rays at these angles [rad]."""
+        return trace_fan(self.fan, angles, self.index)
+
+    def locate(self, points: Points) -> FanCoordinates:
+        """Find angle, range and distance from the sheet of points in the camera frame [m]."""
+        return locate_on_fan(points, self.fan, self.index)
+
+    def directions(self, angles: Scalars) -> Directions:
+        """Give the direction in which light travels at these angles [rad], by the table."""
+        return self._read(self._rays.directions, angles)
+
+    def normals(self, angles: Scalars, ranges: Scalars) -> Directions:
+        """Give the unit normal of the sheet at these places."""
+        normals = np.cross(self.directions(angles), self._across(angles, ranges))
+        return normals / np.linalg.norm(normals, axis=1, keepdims=True)
+
+    def line_power(self, angles: Scalars, ranges: Scalars) -> Scalars:
+        """Give the power that crosses a metre of the sheet's width, in clear water [W/m]."""
+        width = np.linalg.norm(self._across(angles, ranges), axis=1)
+        return self.power_per_angle(angles) / np.maximum(width, 1e-6)
+
+    def irradiance(self, where: FanCoordinates) -> Scalars:
+        """Give the power through a square metre across the beam, in clear water [W/m²]."""
+        thickness = self.light.thickness(where.range)
+        profile = np.exp(-0.5 * (where.distance / thickness) ** 2)
+        line = self.line_power(where.angle, where.range)
+        return line * profile / (thickness * math.sqrt(2 * math.pi))
+
+    def power_per_angle(self, angles: Scalars) -> Scalars:
+        """Give the power a radian [W], even along a straight line across the fan."""
+        edge = math.tan(self.fan.half_angle)
+        share = np.abs(np.tan(angles)) / edge
+        fade = np.clip((1 - share) / _EDGE, 0, 1)
+        even = self.light.power / ((2 - _EDGE) * edge) / np.cos(angles) ** 2
+        return np.where(share <= 1, even * fade, 0.0)
+
+    def _across(self, angles: Scalars, ranges: Scalars) -> Directions:
+        """How far a point of the sheet moves with the angle of its ray, across the ray [m/rad]."""
+        start, turn = self._spreading
+        moved = self._read(start, angles) + ranges[:, None] * self._read(turn, angles)
+        away = self.directions(angles)
+        return moved - np.einsum("ij,ij->i", moved, away)[:, None] * away
+
+    def _read(self, table: Float[np.ndarray, "m 3"], angles: Scalars) -> Directions:
+        return np.stack([np.interp(angles, self._angles, column) for column in table.T], axis=1)
+
+    @cached_property
+    def _angles(self) -> Scalars:
+        return np.linspace(-self.fan.half_angle, self.fan.half_angle, _NUM_ANGLES)
+
+    @cached_property
+    def _rays(self) -> Rays:
+        return self.rays(self._angles)
+
+    @cached_property
+    def _spreading(self) -> tuple[Directions, Directions]:
+        rays = self._rays
+        start, turn = (
+            np.gradient(table, self._angles, axis=0) for table in (rays.origins, rays.directions)
+        )
+        return start, turn

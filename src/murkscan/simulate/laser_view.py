@@ -1,0 +1,90 @@
+"""A laser and a camera made ready: everything that stays the same from frame to frame."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..optics.spread import Spread
+from ..types.arrays import Pixels, Points, Scalars
+from .beam import Beam
+from .scan_lines import ScanLines
+from .scene import Scene
+from .sensor import Picture
+from .sheet_view import SheetView, glow_of, view_sheet
+from .stripe_image import Rendering
+from .water_blur import WaterBlur, Weights
+
+_DARK = 20.0
+"""Attenuation lengths beyond which no light is worth spreading."""
+
+
+@dataclass(frozen=True, eq=False)
+class LaserView:
+    """One laser as the camera sees it, apart from what stands in its light."""
+
+    beam: Beam
+    scan_lines: ScanLines
+    view: SheetView
+    """What each pixel sees of the sheet, row by row."""
+    glow: Picture
+    """Radiance of the sheet's own glow [W/m²/sr], as if nothing stood in its way."""
+    stripe_blur: WaterBlur | None
+    """How the water spreads light from the surface; None: not at all."""
+    glow_blur: WaterBlur | None
+    """How it spreads its own glow."""
+
+    def rendering(self, scene: Scene, number: int) -> Rendering:
+        """Give all that light on a surface depends on in one frame."""
+        pose = scene.pose(number)
+        return Rendering(self.beam, self.scan_lines, scene.surroundings, scene.medium, pose)
+
+    def points(self) -> Points:
+        """Give where each pixel sees the sheet, in the camera frame [m]; NaN where it does not."""
+        return self.view.origins + self.view.camera_range[:, None] * self.view.directions
+
+
+def view_laser(scene: Scene, number: int) -> LaserView:
+    """Make one laser ready."""
+    laser = scene.rig.lasers[number]
+    scan_lines = ScanLines(scene.rig.camera, laser, scene.index)
+    beam = Beam.of(laser, scene.light, scene.index)
+    width, height = scene.rig.camera.size
+    v, u = np.mgrid[:height, :width].reshape(2, -1).astype(float)
+    view = view_sheet(beam, scan_lines, np.stack([u, v], axis=1))
+    glow = _glow_at(scene, beam, view).reshape(height, width).astype(np.float32)
+    stripe_blur = glow_blur = None
+    if scene.medium is not None and scene.forward_scattering and scene.medium.scattering > 0:
+        stripe_blur = _blur_of(scene, Spread.of(scene.medium), beam, scan_lines)
+        glow_blur = _blur_of(scene, Spread.of_glow(scene.medium), beam, scan_lines)
+    return LaserView(beam, scan_lines, view, glow, stripe_blur, glow_blur)
+
+
+def _glow_at(scene: Scene, beam: Beam, view: SheetView) -> Scalars:
+    if scene.medium is None or not scene.glow:
+        return np.zeros(len(view.angle))
+    return glow_of(view, beam, scene.medium)
+
+
+def _blur_of(scene: Scene, spread: Spread, beam: Beam, scan_lines: ScanLines) -> WaterBlur:
+    attenuation = scene.medium.attenuation if scene.medium else 0.0
+    scale = scan_lines.pixels_per_tangent()
+
+    def weights_at(pixels: Pixels) -> Weights:
+        view = view_sheet(beam, scan_lines, pixels)
+        weights = np.zeros((len(pixels), len(spread.widths)))
+        ways = view.camera_range + view.laser_range
+        with np.errstate(invalid="ignore"):
+            seen = np.flatnonzero(ways * attenuation < _DARK)
+        weights[seen] = spread.weights(view.laser_range[seen], view.camera_range[seen])
+        return weights
+
+    def glow_at(pixels: Pixels) -> Scalars:
+        return _glow_at(scene, beam, view_sheet(beam, scan_lines, pixels))
+
+    return WaterBlur.of(
+        scene.rig.camera.size,
+        scan_lines.laser.axis,
+        sigmas=tuple(float(width * scale) for width in spread.widths),
+        weights_at=weights_at,
+        glow_at=glow_at,
+    )

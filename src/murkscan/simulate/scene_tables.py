@@ -1,0 +1,273 @@
+"""The tables of scene.toml: keys with their units on one side, values in SI on the other."""
+
+import math
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
+from scipy.spatial.transform import Rotation
+
+from ..errors import InputError
+from ..io.mesh_files import load_mesh
+from ..optics.medium import Medium
+from ..optics.phase import AbstractPhase
+from ..optics.phase_fournier_forand import FournierForand
+from ..optics.phase_henyey_greenstein import HenyeyGreenstein
+from ..optics.phase_petzold import PetzoldHarbour
+from ..optics.turbidity import medium_of
+from ..types.mesh import Mesh
+from ..types.pose import Pose
+from ..types.water import Water
+from .beam import Light
+from .choices import SHAPES, TEXTURES, make_choice
+from .particles import Particles
+from .sensor import Codec, Colour, Sensor
+from .surface import Body
+from .textures import AbstractTexture
+from .vehicle import Navigation, Unrest
+
+_UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254}
+_STATE = {"temperature_c", "salinity_psu", "depth_m", "index"}
+
+_Vector = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
+
+
+class Table(BaseModel):
+    """A table whose unknown keys are errors."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class OpenTable(BaseModel):
+    """A table that may hold the settings of what it names."""
+
+    model_config = ConfigDict(extra="allow", frozen=True)
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """The keys that are not its own."""
+        return dict(self.model_extra or {})
+
+
+class SurfaceTable(OpenTable):
+    """[surface] for all objects, [object.surface] for one."""
+
+    texture: str = "plain"
+    gloss: FiniteFloat = 0.0
+
+    def as_texture(self, key: str) -> AbstractTexture:
+        """Give the texture, with its settings."""
+        made: AbstractTexture = make_choice(TEXTURES, self.texture, self.settings, f"{key}.texture")
+        return made
+
+
+class ObjectTable(OpenTable):
+    """[object], or several [[object]]."""
+
+    mesh: str
+    unit: Literal["m", "cm", "mm", "in"] = "m"
+    position_mm: _Vector = (0.0, 0.0, 0.0)
+    rotation_deg: _Vector = (0.0, 0.0, 0.0)
+    surface: SurfaceTable | None = None
+
+    def as_body(self, key: str, surface: SurfaceTable, folder: Path) -> Body:
+        """Give the object with its surface; `folder` is where a mesh file is looked for.
+
+        Raises:
+            InputError: The mesh is no built-in shape and no file, or a setting is out of range.
+            FormatError: The mesh file cannot be read.
+        """
+        own = self.surface or surface
+        turn = Rotation.from_euler("xyz", self.rotation_deg, degrees=True).as_matrix()
+        pose = Pose(turn, np.array(self.position_mm) / 1e3)
+        where = "surface" if self.surface is None else f"{key}.surface"
+        return Body(self._as_mesh(key, folder), pose, own.as_texture(where), own.gloss)
+
+    def _as_mesh(self, key: str, folder: Path) -> Mesh:
+        if self.mesh in SHAPES:
+            return make_choice(SHAPES, self.mesh, self.settings, f"{key}.mesh").mesh()
+        path = folder / self.mesh
+        if not path.is_file():
+            raise InputError(
+                f"{key}.mesh: {self.mesh!r} is neither a file in {folder} nor one of "
+                f"{', '.join(SHAPES)}."
+            )
+        if self.settings:
+            raise InputError(f"{key}.{next(iter(self.settings))} is no key of a mesh from a file.")
+        mesh = load_mesh(path)
+        return Mesh(mesh.vertices * _UNITS[self.unit], mesh.faces)
+
+
+class WaterTable(Table):
+    """[water]."""
+
+    temperature_c: FiniteFloat | None = None
+    salinity_psu: FiniteFloat | None = None
+    depth_m: FiniteFloat | None = None
+    index: FiniteFloat | None = None
+    type: str | None = None
+    attenuation_per_m: FiniteFloat | None = None
+    single_scattering_albedo: FiniteFloat | None = None
+    phase: Literal["petzold-harbour", "fournier-forand", "henyey-greenstein"] = "petzold-harbour"
+    mean_cosine: FiniteFloat = 0.9
+    particles_per_frame: FiniteFloat = 0.0
+    particle_diameter_mm: FiniteFloat = 0.4
+    particle_albedo: FiniteFloat = 0.4
+    drift_mm_s: _Vector = (3.0, 5.0, 0.0)
+    glow: bool = True
+    forward_scattering: bool = True
+
+    def as_water(self) -> Water | None:
+        """Give what bends the light; None where the table does not say."""
+        if self.index is not None:
+            return Water(index=self.index)
+        if not _STATE & self.model_fields_set:
+            return None
+        return Water(
+            20.0 if self.temperature_c is None else self.temperature_c,
+            35.0 if self.salinity_psu is None else self.salinity_psu,
+            self.depth_m or 0.0,
+        )
+
+    def as_medium(self) -> Medium | None:
+        """Give what attenuates and scatters it; None for clear water."""
+        if self.type is not None:
+            if {"attenuation_per_m", "single_scattering_albedo"} & self.model_fields_set:
+                raise InputError(
+                    "water.type says how the water attenuates; remove water.attenuation_per_m and "
+                    "water.single_scattering_albedo, or the type."
+                )
+            return medium_of(self.type, self._as_phase())
+        if not self.attenuation_per_m:
+            return None
+        albedo = self.single_scattering_albedo
+        return Medium(self.attenuation_per_m, 0.83 if albedo is None else albedo, self._as_phase())
+
+    def as_particles(self) -> Particles:
+        """Give the marine snow."""
+        x, y, z = self.drift_mm_s
+        return Particles(
+            self.particles_per_frame,
+            self.particle_diameter_mm / 1e3,
+            self.particle_albedo,
+            (x / 1e3, y / 1e3, z / 1e3),
+        )
+
+    def _as_phase(self) -> AbstractPhase:
+        if self.phase == "henyey-greenstein":
+            return HenyeyGreenstein(self.mean_cosine)
+        return FournierForand() if self.phase == "fournier-forand" else PetzoldHarbour()
+
+
+class LightTable(Table):
+    """[light]."""
+
+    power_mw: FiniteFloat = 30.0
+    divergence_mrad: FiniteFloat = 1.4
+    waist_mm: FiniteFloat = 1.0
+    ambient_w_m2: FiniteFloat = 0.0
+
+    def as_light(self) -> Light:
+        """Give the light."""
+        return Light(
+            self.power_mw / 1e3, self.divergence_mrad / 1e3, self.waist_mm / 1e3, self.ambient_w_m2
+        )
+
+
+class SensorTable(Table):
+    """[sensor]."""
+
+    full_well_e: FiniteFloat = 9000.0
+    read_noise_e: FiniteFloat = 9.0
+    shot_noise: bool = True
+    bits: int = 8
+    black_level: FiniteFloat = 4.0
+    psf_px: FiniteFloat = 0.7
+    composite_px: FiniteFloat = 0.0
+    vignetting: bool = True
+    exposure_ms: FiniteFloat = 10.0
+    f_number: FiniteFloat = 2.0
+    pixel_size_um: FiniteFloat = 5.0
+    quantum_efficiency: FiniteFloat = 0.6
+    gain: FiniteFloat = 1.0
+    peak_grey: FiniteFloat | None = None
+    interlaced: bool = False
+    colour: Colour = "mono"
+    codec: Codec = "png"
+    crf: int = 23
+
+    def as_sensor(self) -> Sensor:
+        """Give the sensor."""
+        renamed = {"full_well_e": "full_well", "read_noise_e": "read_noise", "psf_px": "psf"}
+        renamed |= {"composite_px": "composite", "exposure_ms": "exposure"}
+        renamed |= {"pixel_size_um": "pixel_size"}
+        values = {renamed.get(key, key): value for key, value in self.model_dump().items()}
+        values["exposure"] /= 1e3
+        values["pixel_size"] /= 1e6
+        return Sensor(**values)
+
+
+class VehicleTable(Table):
+    """[motion.vehicle]: how the vehicle departs from its straight way, 1σ."""
+
+    speed_percent: FiniteFloat = 0.0
+    sway_mm: FiniteFloat = 0.0
+    heave_mm: FiniteFloat = 0.0
+    attitude_deg: FiniteFloat = 0.0
+    period_s: FiniteFloat = 6.0
+
+    def as_unrest(self) -> Unrest:
+        """Give the departure."""
+        return Unrest(
+            self.speed_percent / 100,
+            self.sway_mm / 1e3,
+            self.heave_mm / 1e3,
+            math.radians(self.attitude_deg),
+            self.period_s,
+        )
+
+
+class NavigationTable(Table):
+    """[motion.navigation]: what the vehicle's own log says."""
+
+    rate_hz: FiniteFloat = 10.0
+    position_noise_mm: FiniteFloat = 0.0
+    attitude_noise_deg: FiniteFloat = 0.0
+    latency_ms: FiniteFloat = 0.0
+
+    def as_navigation(self) -> Navigation:
+        """Give the log's qualities."""
+        return Navigation(
+            self.rate_hz,
+            self.position_noise_mm / 1e3,
+            math.radians(self.attitude_noise_deg),
+            self.latency_ms / 1e3,
+        )
+
+
+class MotionTable(Table):
+    """[motion]."""
+
+    frames: Annotated[int, Field(ge=1, le=10_000_000)] | None = None
+    frame_rate_hz: Annotated[FiniteFloat, Field(gt=0, le=1e5)] = 25.0
+    speed_mm_s: FiniteFloat | None = None
+    along: Literal["x", "y", "z"] | None = None
+    start_mm: _Vector = (0.0, 0.0, 0.0)
+    poses: str | None = None
+    vehicle: VehicleTable = VehicleTable()
+    navigation: NavigationTable | None = None
+
+
+class SceneTable(Table):
+    """All of scene.toml."""
+
+    format: Literal[1]
+    seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
+    object: ObjectTable | list[ObjectTable]
+    surface: SurfaceTable = SurfaceTable()
+    water: WaterTable = WaterTable()
+    rig: dict[str, Any]
+    light: LightTable = LightTable()
+    sensor: SensorTable = SensorTable()
+    motion: MotionTable

@@ -1,0 +1,184 @@
+"""Forward scattering: how water spreads a sharp picture into a peak on a broad skirt.
+
+Each bit of light is spread by a sum of round Gaussians whose weights depend on the ways that it has
+travelled. Every pixel belongs to one place of the sheet, so the weights are pictures, made once. A
+Gaussian of many pixels is drawn on a picture that is smaller by as much.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from jaxtyping import Float, Float32
+
+from ..types.arrays import Pixels, Scalars
+from ..types.laser import Axis
+from .sensor import Picture
+
+_FINEST = 1.5
+"""Pixels that a Gaussian has at least, 1σ, on the level on which it is drawn."""
+_RIM_LEVEL = 2
+"""First level that reaches beyond the picture: the Gaussians below bring in nothing from there."""
+_RIM = 256
+"""How far it does so, in pixels of the full picture."""
+_LAST = 6
+"""The coarsest level, of 64 pixels to one."""
+_RESAMPLING = 0.25
+"""Variance that shrinking pictures and growing them again adds, in pixels of the small one."""
+
+AnyPicture = Float32[np.ndarray, "_ _"]
+"""A picture of any size."""
+Weights = Float[np.ndarray, "n k"]
+WeightsAt = Callable[[Pixels], Weights]
+"""From pixels, also beyond the picture, to the weight of each Gaussian there."""
+GlowAt = Callable[[Pixels], Scalars]
+"""From pixels, also beyond the picture, to the light there if nothing stood in its way."""
+
+
+@dataclass(frozen=True, eq=False)
+class Bell:
+    """One Gaussian."""
+
+    level: int
+    """The level on which it is drawn: each is half as large as the one before."""
+    sigma: float
+    """1σ in pixels of that level."""
+    weights: AnyPicture
+    """Its weight at each pixel of the full picture, made up to whole pixels of the coarsest level,
+    relative to the sharp light."""
+    beyond: AnyPicture
+    """The sheet's own glow, weighted, on that level with its rim, if nothing stood in its way."""
+
+
+@dataclass(frozen=True, eq=False)
+class WaterBlur:
+    """The spreading of one laser's light, as one camera sees it."""
+
+    size: tuple[int, int]
+    """Width and height of the picture [px]."""
+    axis: Axis
+    """The laser's axis, across which the stripe goes on beyond the picture."""
+    bells: tuple[Bell, ...]
+
+    @classmethod
+    def of(
+        cls,
+        size: tuple[int, int],
+        axis: Axis,
+        *,
+        sigmas: tuple[float, ...],
+        weights_at: WeightsAt,
+        glow_at: GlowAt,
+    ) -> "WaterBlur":
+        """Tabulate the weights of Gaussians whose 1σ is given in pixels of the full picture."""
+        width, height = size
+        weights = weights_at(_pixels(height, width, 1, 0)).astype(np.float32)
+        rows, columns = (
+            _cells(side, _RIM_LEVEL) + 2 * _rim(_RIM_LEVEL) for side in (height, width)
+        )
+        around = _pixels(rows, columns, 2**_RIM_LEVEL, _rim(_RIM_LEVEL))
+        glow = (glow_at(around)[:, None] * weights_at(around)).astype(np.float32)
+        bells = []
+        for number, sigma in enumerate(sigmas):
+            level = int(np.clip(math.floor(math.log2(sigma / _FINEST)), 0, _LAST))
+            own = math.sqrt((sigma / 2**level) ** 2 - (_RESAMPLING if level else 0.0))
+            beyond = _shrink(glow[:, number].reshape(rows, columns), max(level - _RIM_LEVEL, 0))
+            own_weights = _fill(weights[:, number].reshape(height, width))
+            bells.append(Bell(level, own, own_weights, beyond))
+        return cls(size, axis, tuple(bells))
+
+    def spread_stripe(self, sharp: Picture) -> Picture:
+        """Give the light of a stripe that reaches other pixels, to be added to the sharp picture.
+
+        Beyond the picture it goes on along the stripe; across it there is nothing.
+        """
+        return self._spread(sharp, None)
+
+    def spread_glow(self, sharp: Picture, mask: Picture) -> Picture:
+        """Give the same for the sheet's glow.
+
+        Args:
+            sharp: What would be seen by light that is never scattered forward.
+            mask: Share of each pixel's glow that nothing hides; beyond the picture it goes on as at
+                its edge.
+        """
+        return self._spread(sharp, mask)
+
+    def _spread(self, sharp: Picture, mask: Picture | None) -> Picture:
+        light: list[AnyPicture | None] = [None] * (_LAST + 1)
+        whole = _fill(sharp)
+        free = None if mask is None else _fill(mask)
+        for bell in self.bells:
+            small = _shrink(whole * bell.weights, bell.level)
+            if bell.level >= _RIM_LEVEL:
+                small = self._add_rim(small, bell, free)
+            side = 2 * math.ceil(3.5 * bell.sigma) + 1
+            drawn = cv2.GaussianBlur(
+                small, (side, side), bell.sigma, borderType=cv2.BORDER_REPLICATE
+            )
+            before = light[bell.level]
+            light[bell.level] = drawn if before is None else before + drawn
+        return self._grow(light)
+
+    def _add_rim(self, picture: AnyPicture, bell: Bell, mask: AnyPicture | None) -> AnyPicture:
+        rim = _rim(bell.level)
+        if mask is None:
+            across, along = (0, 0, rim, rim), (rim, rim, 0, 0)
+            if self.axis == "x":
+                across, along = along, across
+            picture = cv2.copyMakeBorder(picture, *across, cv2.BORDER_REPLICATE)
+            return cv2.copyMakeBorder(picture, *along, cv2.BORDER_CONSTANT, value=0)
+        free = _shrink(mask, bell.level)
+        whole = cv2.copyMakeBorder(free, rim, rim, rim, rim, cv2.BORDER_REPLICATE) * bell.beyond
+        whole[rim:-rim, rim:-rim] = picture
+        return whole
+
+    def _grow(self, light: list[AnyPicture | None]) -> Picture:
+        """Add up the levels, from the coarsest."""
+        total: AnyPicture | None = None
+        for level in range(_LAST, -1, -1):
+            own = light[level]
+            if total is not None:
+                rows, columns = total.shape
+                total = cv2.resize(total, (2 * columns, 2 * rows), interpolation=cv2.INTER_LINEAR)
+                if level == _RIM_LEVEL - 1:
+                    rim = _RIM >> level
+                    total = total[rim:-rim, rim:-rim]
+                own = total if own is None else total + own
+            total = own
+        width, height = self.size
+        assert total is not None
+        return total[:height, :width]
+
+
+def _fill(picture: Picture) -> AnyPicture:
+    """Make a picture up to a size that can be halved down to the coarsest level."""
+    down, right = (_cells(side, 0) - side for side in picture.shape)
+    return cv2.copyMakeBorder(picture, 0, down, 0, right, cv2.BORDER_REPLICATE)
+
+
+def _cells(side: int, level: int) -> int:
+    """Give how many pixels a side has on a level, made up to whole pixels of the coarsest."""
+    return math.ceil(side / 2**_LAST) * 2 ** (_LAST - level)
+
+
+def _rim(level: int) -> int:
+    return _RIM >> level
+
+
+def _pixels(rows: int, columns: int, scale: int, rim: int) -> Pixels:
+    """Give where the middles of a level's pixels lie in the full picture [px]."""
+    v, u = np.meshgrid(
+        *((np.arange(n) - rim + 0.5) * scale - 0.5 for n in (rows, columns)), indexing="ij"
+    )
+    return np.stack([u.ravel(), v.ravel()], axis=1)
+
+
+def _shrink(picture: AnyPicture, level: int) -> AnyPicture:
+    if level == 0:
+        return picture
+    rows, columns = picture.shape
+    size = (columns >> level, rows >> level)
+    return cv2.resize(picture, size, interpolation=cv2.INTER_AREA)

@@ -1,0 +1,107 @@
+"""Scene files: what ships, and what is refused with which words."""
+
+import numpy as np
+import pytest
+
+from murkscan.errors import FormatError, InputError
+from murkscan.simulate import Simulator, list_scenes, load_scene, parse_scene, read_scene
+from murkscan.simulate.sensor import Sensor
+
+NAMES = [
+    *(f"{name}{murk}{rig}" for name in ("plane", "hull") for murk in ("", "-c3") for rig in ("", "-hd")),
+    "sphere-c6", "stairs-c0.3-hd", "chessboard", "chessboard-laser", "demo",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_scenes_ship_by_name(name):
+    scene = load_scene(name)
+    assert len(scene) > 20
+    assert scene.rig.camera.size == ((1920, 1200) if name.endswith("-hd") else (720, 576))
+    assert (scene.medium is not None) == ("-c" in name or name == "demo")
+
+
+def test_the_list_names_each_scene_with_a_line():
+    scenes = list_scenes()
+    assert {"plane", "sphere", "stairs", "hull", "chessboard", "chessboard-laser"} <= set(scenes)
+    assert all(len(line) > 20 for line in scenes.values())
+
+
+BAD = [
+    ("attenuation_per_m = 1.5", "attenuation_per_m = -0.5", "attenuation"),
+    ("attenuation_per_m = 1.5", "attenuation_per_cm = 1.5", "water.attenuation_per_cm is unknown"),
+    ("attenuation_per_m = 1.5", 'attenuation_per_m = 1.5\ntype = "Jerlov II"', "water.type"),
+    ("albedo = 0.1", "albedo = 1.7", "surface.texture"),
+    ("albedo = 0.1", 'texture = "velvet"', "surface.texture must be one of plain, bands"),
+    ('mesh = "plane"', 'mesh = "teapot.ply"', "neither a file"),
+    ("width_mm = 3000.0", "wide_mm = 3000.0", "object.wide_mm is no key of the plane"),
+    ("position_mm = [0.0, 0.0, 900.0]", "position_mm = [0.0, 0.0, -900.0]", "never meets the object"),
+    ("speed_mm_s = 100.0", "speed_mm_s = 90000.0", "motion.speed_mm_s"),
+    ("peak_grey = 200", "peak_grey = 200\nbits = 32", "sensor.bits"),
+    ("peak_grey = 200", "peak_grey = 200\npower = 1", "sensor.power is unknown"),
+    ("frames = 100", "frames = 0", "motion.frames"),
+    ("speed_mm_s = 100.0", 'poses = "nowhere.csv"', "nowhere.csv"),
+    ('file = "rigs/pal.toml"', 'file = "rigs/none.toml"', "none.toml"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("old", "new", "words"), BAD)
+def test_bad_scenes_are_one_sentence_that_names_the_key(old, new, words):
+    text, name, folder = read_scene("plane-c1.5")
+    assert old in text
+    with pytest.raises((FormatError, InputError), match=words):
+        Simulator.of(parse_scene(text.replace(old, new), name, folder))
+
+
+def test_a_port_inside_the_lens_is_refused(tmp_path):
+    text, name, folder = read_scene("plane")
+    rig = (folder / "rigs/pal.toml").read_text().replace("distance_mm = 30.0", "distance_mm = -3.0")
+    (tmp_path / "rigs").mkdir()
+    (tmp_path / "rigs/pal.toml").write_text(rig)
+    with pytest.raises(FormatError, match=r"camera\.port.*inside the lens"):
+        parse_scene(text, name, tmp_path)
+
+
+def test_a_mesh_without_faces_is_refused(tmp_path):
+    (tmp_path / "empty.ply").write_text(
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+        "property float z\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n"
+        "0 0 0\n1 0 0\n0 1 0\n"
+    )
+    text, name, folder = read_scene("plane")
+    text = text.replace('"plane"', '"empty.ply"').replace(
+        "width_mm = 3000.0\nheight_mm = 3000.0\n", ""
+    )
+    (tmp_path / "rigs").mkdir()
+    (tmp_path / "rigs/pal.toml").write_text((folder / "rigs/pal.toml").read_text())
+    with pytest.raises(FormatError, match=r"empty\.ply has no triangles"):
+        parse_scene(text, name, tmp_path)
+
+
+def test_a_mesh_file_of_one_s_own_is_scanned(tmp_path):
+    from murkscan.io.mesh_files import save_mesh
+    from murkscan.simulate.shapes import Plane
+    from murkscan.types.mesh import Mesh
+
+    plate = Plane(3.0, 3.0).mesh()
+    save_mesh(tmp_path / "plate.stl", Mesh(plate.vertices * 1000, plate.faces))
+    text, name, folder = read_scene("plane")
+    text = text.replace('"plane"', '"plate.stl"\nunit = "mm"')
+    text = text.replace("width_mm = 3000.0\nheight_mm = 3000.0\n", "")
+    (tmp_path / "rigs").mkdir()
+    (tmp_path / "rigs/pal.toml").write_text((folder / "rigs/pal.toml").read_text())
+    own, ours = parse_scene(text, name, tmp_path), load_scene("plane")
+    mine, theirs = (Simulator.of(scene).draw_frame(3) for scene in (own, ours))
+    # STL keeps single precision.
+    np.testing.assert_allclose(mine.stripe.points, theirs.stripe.points, atol=1e-5)
+
+
+def test_a_sensor_refuses_what_cannot_be():
+    for settings, words in (
+        ({"psf": 0.0}, "psf_px"),
+        ({"exposure": 100.0}, "exposure_ms must lie between 0.001 and 10000"),
+        ({"codec": "ffv1", "bits": 12}, "8 bits"),
+        ({"interlaced": True, "colour": "rggb"}, "no fields"),
+    ):
+        with pytest.raises(InputError, match=words):
+            Sensor(**settings)
