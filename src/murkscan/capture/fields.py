@@ -26,6 +26,8 @@ _LEAN = 0.2
 for noise smears them into each other; progressive video of all kinds was seen to stay below 0.1.
 """
 
+_UNUSUAL = 0.999
+"""Quantile of a picture's differences above which they count no more than it."""
 _APART = 0.1
 """Ratio of a to the smaller of b and c from which fields may be apart; 1 but for an encoder."""
 _AGREEMENT = 0.8
@@ -93,11 +95,7 @@ def find_field_order(runs: Iterable[Sequence[Image]]) -> FieldVerdict:
         previous = next(fields, None)
         for current in fields:
             for scale, (old, new) in enumerate(zip(previous or (), current, strict=True)):
-                a, b, c = (
-                    _differences(old[0], old[1]),
-                    _differences(old[1], new[0]),
-                    _differences(old[0], new[1]),
-                )
+                a, b, c = _differences((old, (old[1], new[0]), (old[0], new[1])))
                 motion[-1][:, scale] += _sums(b + c - 2 * a)
                 lean[-1][:, scale] += _sums(c - b)
                 sums[:, scale] += float(a.sum()), float(b.sum()), float(c.sum())
@@ -141,8 +139,15 @@ _QUARTER = _interpolation_weights(8, 0.25)
 """Eight rows: with two, what a thin stripe leaves between the rows outweighs its slow motion."""
 
 
-def _differences(a: Field, b: Field) -> Field:
-    return np.square(np.square(a - b))
+def _differences(pairs: Sequence[tuple[Field, Field]]) -> list[Field]:
+    """Give the fourth powers of the differences, those of the few largest cells made equal.
+
+    A particle that the sheet lights up in one field only tells nothing of their order, but would
+    outweigh the stripe.
+    """
+    sizes = [np.abs(a - b) for a, b in pairs]
+    cap = np.quantile(np.maximum.reduce(sizes), _UNUSUAL)
+    return [np.square(np.square(np.minimum(size, cap))) for size in sizes]
 
 
 def _sums(values: Field) -> tuple[float, float]:
