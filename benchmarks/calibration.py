@@ -12,13 +12,15 @@ from pathlib import Path
 import numpy as np
 from harness import DATA, Figure, skip, tell
 
-from murkscan.calibrate import Chessboard, Margin
+from murkscan.calibrate import CameraCalibration, Chessboard, Margin, calibrate_camera
 from murkscan.errors import Degenerate
 from murkscan.survey.calibrate import calibrate_camera_from_photos
 from murkscan.survey.calibrate_laser import calibrate_laser_from_photos
 
 PAPER = Margin(left=0.115, right=0.08, top=0.06, bottom=0.065)
 """The white paper of the green laser's board beyond its squares, as its photos show it [m]."""
+RESAMPLES = 40
+"""Sets of views drawn for a bootstrap: a deviation is then known to a tenth."""
 NORMAL, DISTANCE = np.array([-0.9057, 0.1395, -0.4004]), 0.1657
 """The reference plane in the data's README, from an independent fit [m]."""
 
@@ -59,6 +61,20 @@ def measure_cameras(data: Path, scratch: Path) -> Iterator[Figure]:
         yield Figure(f"{folder}: boards found of {count}", found, at_least=count)
         yield Figure(f"{folder}: focal length", camera.focal_length[0], "px")
         yield Figure(f"{folder}: its standard deviation", float(sigma[0]), "px")
+        ratios = sigma / bootstrap(result.calibration, board)
+        yield Figure(f"{folder}: least stated deviation over bootstrap", float(ratios.min()))
+        yield Figure(f"{folder}: largest stated deviation over bootstrap", float(ratios.max()))
+
+
+def bootstrap(calibration: CameraCalibration, board: Chessboard) -> np.ndarray:
+    """Give the standard deviation of each parameter over resampled sets of views."""
+    random, found = np.random.default_rng(0), []
+    views = calibration.views
+    for _ in range(RESAMPLES):
+        some = [views[i] for i in random.integers(len(views), size=len(views))]
+        camera = calibrate_camera(some, board, calibration.camera.size).camera
+        found.append([*camera.focal_length, *camera.principal_point, *camera.distortion])
+    return np.std(found, axis=0, ddof=1)
 
 
 def refusal_of_parallel_boards(data: Path, scratch: Path) -> str:

@@ -66,7 +66,7 @@ class CameraCalibration:
         """Give the views with the board where it was found to be."""
         flat = board.points()
         return tuple(
-            Sighting(view.name, view.corners, flat, pose)
+            Sighting(view.name, view.corners, view.places(flat), pose)
             for view, pose in zip(self.views, self.camera_from_boards, strict=True)
         )
 
@@ -147,7 +147,7 @@ def _refuse_one_photo(worth: Worth, views: Sequence[BoardView], focal_length: fl
 
 def _check_views(used: Sequence[BoardView], num_tried: int, board: Chessboard) -> None:
     for view in used:
-        if len(view.corners) != board.num_corners:
+        if len(view.corners) != (board.num_corners if view.numbers is None else len(view.numbers)):
             raise InputError(
                 f"{view.name} has {len(view.corners)} corners but a {board} board has "
                 f"{board.num_corners}; find its corners again for this board."
@@ -171,7 +171,7 @@ class _PlainFit:
     def sightings(self, board: Chessboard) -> list[Sighting]:
         flat = board.points()
         return [
-            Sighting(view.name, view.corners, flat, pose)
+            Sighting(view.name, view.corners, view.places(flat), pose)
             for view, pose in zip(self.views, self.camera_from_boards, strict=True)
         ]
 
@@ -205,7 +205,7 @@ def _fit(views: Sequence[BoardView], board: Chessboard, size: tuple[int, int]) -
     )
     poses = tuple(_as_pose(turn, shift) for turn, shift in zip(turns, shifts, strict=True))
     rms = tuple(
-        _rms(view.corners - _project(camera, turn, shift, flat))
+        _rms(view.corners - _project(camera, turn, shift, view.places(flat)))
         for view, turn, shift in zip(views, turns, shifts, strict=True)
     )
     return _PlainFit(camera, tuple(views), poses, rms)

@@ -36,8 +36,7 @@ def draw_board(
     """
     canvas, zoom = _enlarge(photo)
     if view.is_found:
-        grid = view.corners.reshape(board.rows, board.columns, 2)
-        for row in grid:
+        for row in _rows_of(view, board):
             _line(canvas, row, zoom, _YELLOW)
         for corner in view.corners:
             cv2.circle(canvas, _at(corner, zoom), 4, _GREEN, 1, cv2.LINE_AA)
@@ -47,6 +46,12 @@ def draw_board(
             _line(canvas, ends, zoom, _RED, thickness=2)
         note += f"   (red: residuals x {_GAIN}; blue: first corner)"
     return _write(canvas, note)
+
+
+def _rows_of(view: BoardView, board: Chessboard) -> list[Pixels]:
+    """Give the corners row by row."""
+    numbers = np.arange(board.num_corners) if view.numbers is None else view.numbers
+    return [view.corners[numbers // board.columns == row] for row in range(board.rows)]
 
 
 def draw_stripe_on_board(

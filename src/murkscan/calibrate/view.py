@@ -4,8 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from jaxtyping import Float
 
-from ..types.arrays import Pixels, Points
+from ..types.arrays import Indices, Pixels, Points
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,17 +19,23 @@ class BoardView:
     """Inner corners, row after row as the board has them [px]; of length 0 where none was found."""
     is_first_dark: bool = True
     """Whether the square before the first corner, up and left, is dark."""
+    numbers: Indices | None = None
+    """Which of the board's corners these are; None for all of them."""
 
     @property
     def is_found(self) -> bool:
         """Tell whether the photo shows the board."""
         return len(self.corners) > 0
 
+    def places(self, flat: Points) -> Float[np.ndarray, "m 3"]:
+        """Give those of the board's points that the corners show."""
+        return flat if self.numbers is None else flat[self.numbers]
+
 
 def as_opencv(
     views: Sequence[BoardView], flat: Points
 ) -> tuple[list[np.ndarray], list[np.ndarray]]:
     """Give board points and corners of each view as OpenCV's calibration takes them."""
-    return [flat.astype(np.float32)] * len(views), [
+    return [view.places(flat).astype(np.float32) for view in views], [
         np.ascontiguousarray(view.corners[:, None], dtype=np.float32) for view in views
     ]

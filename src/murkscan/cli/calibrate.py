@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from ..calibrate import Chessboard
     from ..survey.calibrate import CameraResult
 
+_LEAST_SQUARE, _MOST_SQUARE = 0.5, 1000.0
+"""Sides of squares that a board can have [mm]; what lies outside was meant in another unit."""
+
 app = App(name="calibrate", help="Find out what the camera and the laser are.")
 app.command(
     "murkscan.cli.calibrate_port:port",
@@ -39,7 +42,14 @@ app.command(
 
 @app.command
 def camera(
-    images: Path, *, board: str, square_mm: float, rig: Path, wavelength_nm: float = 532.0
+    images: Path,
+    *,
+    board: str,
+    square_mm: float,
+    rig: Path,
+    charuco_marker_mm: float | None = None,
+    charuco_dictionary: str = "4X4_50",
+    wavelength_nm: float = 532.0,
 ) -> None:
     """Calibrate the camera on photos of a chessboard, and write it to the rig file.
 
@@ -53,15 +63,30 @@ def camera(
         Side of a square [mm].
     rig
         The rig file; made where it is missing. Its other tables and comments stay.
+    charuco_marker_mm
+        Side of a marker of a ChArUco board [mm], of which a part is enough; not given for a plain
+        chessboard.
+    charuco_dictionary
+        The markers that the ChArUco board was printed with, as OpenCV calls them.
     wavelength_nm
         Wavelength of the laser [nm], for a new rig file.
     """
     chessboard = parse_board(board, square_mm)
+    markers = None
+    if charuco_marker_mm is not None:
+        from ..calibrate.charuco import Markers
+
+        markers = Markers(charuco_marker_mm / 1e3, charuco_dictionary)
     from ..survey.calibrate import calibrate_camera_from_photos
 
     with progress_bars() as progress:
         result = calibrate_camera_from_photos(
-            images, chessboard, rig, wavelength=wavelength_nm * 1e-9, progress=progress
+            images,
+            chessboard,
+            rig,
+            wavelength=wavelength_nm * 1e-9,
+            markers=markers,
+            progress=progress,
         )
     _print_camera(result, rig)
 
@@ -72,6 +97,11 @@ def parse_board(text: str, square_mm: float) -> "Chessboard":
     if match is None:
         raise InputError(
             f"--board {text!r} is not a board; give its inner corners as COLUMNSxROWS, such as 9x6."
+        )
+    if 0 < square_mm < _LEAST_SQUARE or square_mm > _MOST_SQUARE:
+        raise InputError(
+            f"--square-mm {square_mm:g} cannot be: squares are {_LEAST_SQUARE:g} to "
+            f"{_MOST_SQUARE:g} mm wide. Give millimetres, such as 30 for 0.03 m."
         )
     from ..calibrate import Chessboard
 

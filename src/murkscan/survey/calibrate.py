@@ -8,6 +8,7 @@ from typing import Any
 
 from ..calibrate.board import Chessboard
 from ..calibrate.camera import CameraCalibration, calibrate_camera
+from ..calibrate.charuco import Markers
 from ..calibrate.story import Story
 from ..calibrate.verdict import CalibrationVerdict, judge_camera
 from ..errors import EstimationError, InputError
@@ -45,6 +46,7 @@ def calibrate_camera_from_photos(
     rig_path: Path,
     *,
     wavelength: float = 532e-9,
+    markers: Markers | None = None,
     progress: Progress = silent,
 ) -> CameraResult:
     """Calibrate a camera and write it to a rig file; the rest of the file stays.
@@ -54,6 +56,7 @@ def calibrate_camera_from_photos(
         board: The board.
         rig_path: The rig file; made where it is missing.
         wavelength: Of the laser [m]; written where the rig file has none.
+        markers: The markers of a ChArUco board, of which a part is enough; None for a plain one.
         progress: Told of each photo.
 
     Raises:
@@ -65,7 +68,7 @@ def calibrate_camera_from_photos(
     """
     tables = _read_without_port(rig_path)
     photos, folder = open_photos(path, rig_path, "camera")
-    views, size = find_boards(photos, board, progress)
+    views, size = find_boards(photos, board, progress, markers=markers)
     draw = partial(draw_boards, photos, views, folder, board=board, progress=progress)
     try:
         calibration = calibrate_camera(views, board, size)
