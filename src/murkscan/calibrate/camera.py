@@ -48,7 +48,7 @@ class CameraCalibration:
     """The views that it was calibrated on."""
     camera_from_boards: tuple[Pose, ...]
     """Where the board was in each view."""
-    residuals: tuple[Pixels, ...]
+    residuals: tuple[Float[np.ndarray, "_ 2"], ...]
     """Corner as found minus corner as projected, of each view [px]."""
     covariance: Float[np.ndarray, "9 9"]
     """Of `PARAMETERS`, told from the residuals and from how much the views disagree."""
