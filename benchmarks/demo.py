@@ -1,4 +1,4 @@
-"""The demo's hull: how far the cloud is from the truth, without noise and with it."""
+"""The demo's hull: how far the cloud is from the truth."""
 
 import tempfile
 import time
@@ -6,33 +6,28 @@ from pathlib import Path
 
 from harness import Figure, tell
 
-from murkscan.survey.demo import run_demo
-
-NOISE = 2.55
-"""Noise of the second run: one percent of full range [grey levels]."""
+from murkscan.survey.demo import FALSE, run_demo
 
 
 def main() -> None:
-    figures = []
-    for noise, bar in ((0.0, 0.1), (NOISE, None)):
-        with tempfile.TemporaryDirectory() as folder:
-            start = time.perf_counter()
-            _, errors = run_demo(Path(folder), noise=noise)
-            spent = time.perf_counter() - start
-        name = f"noise {noise:g}"
-        figures += [
-            Figure(f"{name}: RMS distance to the true hull", errors.rms * 1e3, "mm", at_most=bar),
-            Figure(f"{name}: 95 % within", errors.within_95 * 1e3, "mm"),
-            Figure(f"{name}: largest", errors.largest * 1e3, "mm"),
-            Figure(f"{name}: points", errors.count),
-            Figure(f"{name}: time", spent, "s", at_most=180),
-        ]
+    with tempfile.TemporaryDirectory() as folder:
+        start = time.perf_counter()
+        _, errors = run_demo(Path(folder))
+        spent = time.perf_counter() - start
+    share = 100 * errors.false / errors.count
     tell(
         "demo",
         "The demo against its truth",
-        figures,
-        note="A simulated ship model's hull, 0.42 to 0.58 m before a PAL camera, 250 frames, "
-        "scanned with the default settings. Noise is white, in grey levels of 8 bit.",
+        [
+            Figure("RMS distance to the true hull", errors.rms * 1e3, "mm"),
+            Figure("95 % within", errors.within_95 * 1e3, "mm"),
+            Figure(f"false points, more than {FALSE * 1e3:g} mm off", share, "%"),
+            Figure("points compared", errors.count),
+            Figure("time, with the simulation", spent, "s", at_most=180),
+        ],
+        note="A simulated ship model's hull in water of c = 0.3 /m, 0.73 to 0.85 m before an "
+        "interlaced PAL camera behind a window, 260 pictures, scanned with the default settings. "
+        "False points are mostly particles, which the default extractor takes for the stripe.",
     )
 
 

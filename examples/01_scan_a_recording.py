@@ -4,11 +4,11 @@ from pathlib import Path
 from tempfile import mkdtemp
 
 import murkscan as ms
-from murkscan.simulate import hull_scene
+from murkscan.simulate import load_scene
 from murkscan.survey.simulate import simulate_recording
 
 folder = Path(mkdtemp(prefix="murkscan-"))
-simulate_recording(hull_scene(num_frames=100), folder / "recording")
+simulate_recording(load_scene("sphere-c0.3"), folder / "recording")
 
 # From here on as with a recording of your own.
 rig = ms.load_rig(folder / "recording" / "rig.toml")

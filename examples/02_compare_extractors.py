@@ -3,10 +3,10 @@
 import numpy as np
 
 import murkscan as ms
-from murkscan.simulate import hull_scene, simulate_frames
+from murkscan.simulate import load_scene, simulate_frames
 
-scene = hull_scene(num_frames=40, noise=2.5)
-made = [one for one in simulate_frames(scene) if len(one.stripe)]
+scene = load_scene("hull-c0.3")
+made = list(simulate_frames(scene, 300, 312))
 
 for extractor in (ms.GrayGravity(), ms.GaussianFit(), ms.Steger(), ms.ThresholdSkeleton()):
     background = extractor.learn([one.frame for one in made], scene.rig)

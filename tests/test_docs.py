@@ -32,3 +32,14 @@ def test_the_readme_s_python_runs_as_printed(hull, tmp_path):
         check=False,
     )
     assert done.returncode == 0, done.stderr
+
+
+def test_the_scene_that_the_docs_show_is_one(tmp_path):
+    from murkscan.simulate import parse_scene, read_scene
+
+    text = (ROOT / "docs/simulate.md").read_text("utf-8")
+    code = re.search(r"```toml\n(.*?)```", text, re.S)[1]
+    _, _, folder = read_scene("plane")
+    shutil.copy(folder / "rigs/pal.toml", tmp_path / "rig.toml")
+    scene = parse_scene(code, "docs", tmp_path)
+    assert (len(scene), scene.medium.attenuation, scene.navigation.rate) == (250, 3.0, 10.0)

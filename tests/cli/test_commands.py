@@ -9,8 +9,8 @@ import pytest
 from murkscan.cli.main import run
 
 COMMANDS = [
-    "demo", "calibrate", "capture", "scan", "extract", "triangulate", "motion", "cloud", "mesh",
-    "view", "report",
+    "demo", "simulate", "calibrate", "capture", "scan", "extract", "triangulate", "motion", "cloud",
+    "mesh", "view", "report",
 ]  # fmt: skip
 
 
@@ -121,3 +121,18 @@ def test_help_loads_nothing_heavy():
     )
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert said.stdout.splitlines()[-1] == "[]"
+
+
+def test_simulate_lists_its_scenes(capsys):
+    assert run(["simulate", "--list"]) == 0
+    listed = capsys.readouterr().out
+    assert all(name in listed for name in ("hull", "sphere", "chessboard-laser", "-hd"))
+
+
+def test_simulate_says_what_it_wants(capsys, tmp_path):
+    assert run(["simulate"]) == 2
+    assert run(["simulate", "teapot", str(tmp_path / "out")]) == 2
+    said = capsys.readouterr().err
+    assert "murkscan simulate SCENE OUT" in said
+    assert "no scene teapot" in said
+    assert not (tmp_path / "out").exists()
