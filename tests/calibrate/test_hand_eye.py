@@ -123,7 +123,7 @@ def test_the_stated_deviations_are_those_that_happen():
     views, times, log = record()
     random = np.random.default_rng(5)
     at_photos = log.at(times)
-    for _ in range(20):
+    for _ in range(12):
         noisy = [replace(v, corners=v.corners + random.normal(0, 0.2, v.corners.shape))
                  for v in views]  # fmt: skip
         places = at_photos.positions + random.normal(0, 1e-3, at_photos.positions.shape)
@@ -138,9 +138,9 @@ def test_the_stated_deviations_are_those_that_happen():
         offs.append([*off, *turn.as_rotvec()])
         sigmas.append(found.sigma)
     ratio = np.std(offs, axis=0) / np.sqrt(np.mean(np.square(sigmas), axis=0))
-    # 20 trials tell a deviation to 16 %, three times that here; the covariance of a pose is told
-    # from 20 photos, in directions that trade off, which makes it up to 20 % too careful.
-    assert np.all((ratio > 0.4) & (ratio < 1.5)), ratio
+    # 12 trials tell a deviation to 20 %, all six together to 10 %; three times that. Deviations
+    # told from 20 photos may be 20 % too careful.
+    assert 0.5 < np.sqrt(np.mean(ratio**2)) < 1.4, ratio
 
 
 def test_turns_about_one_axis_are_refused_with_the_axis():

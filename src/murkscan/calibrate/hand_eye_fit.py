@@ -12,7 +12,7 @@ from ..types.arrays import Scalars, Vector
 from ..types.camera import Camera
 from ..types.pose import Pose
 from .board import Chessboard
-from .hand_eye_covariance import covariance_of
+from .hand_eye_noise import Weighed, weigh_photos
 from .logged import LogSampler
 from .view import BoardView
 
@@ -22,6 +22,8 @@ _NUM_POSES = 12
 """Parameters of mount and board; behind them stands the clock's offset, where it is fitted."""
 _MAX_INTERVAL = 0.5
 """Time between the log's poses above which it does not say how the vehicle moved in between [s]."""
+_NUM_ROUNDS = 6
+"""Rounds of weighing; the noise of a pose settles in three or four."""
 _UNSEEN = 1e3
 """Misfit of a corner that a step of the adjustment puts behind the camera [px]."""
 _SMALL = 1e-6
@@ -139,33 +141,33 @@ class HandEyeProblem:
         Args:
             start: vehicle_from_camera and world_from_board to start from.
         """
-        found, jacobian = self._solve(start, np.zeros(_NUM_POSES))
-        timed = np.append(found, 0.0)
-        clock_sigma = self._clock_sigma(start, timed)
-        if clock_sigma <= MAX_CLOCK_SIGMA and self.log.interval <= _MAX_INTERVAL:
-            found, jacobian = self._solve(start, timed)
-            clock_sigma = self._clock_sigma(start, found)
+        found, weighed = self._refine(start, self._approach(start))
+        clock_sigma = None
+        if self.log.interval <= _MAX_INTERVAL:
+            timed, told = self._refine(start, np.append(found, 0.0))
+            sigma = float(np.sqrt(told.covariance[_NUM_POSES, _NUM_POSES]))
+            if sigma <= MAX_CLOCK_SIGMA:
+                found, weighed, clock_sigma = timed, told, sigma
         misfits = self._misfits(start, found)
-        offset = float(found[_NUM_POSES]) if len(found) > _NUM_POSES else 0.0
-        response = np.linalg.pinv(jacobian, rcond=_SMALL)[:6]
+        offset = float(found[_NUM_POSES:].sum())
         return HandEyeFit(
             photos=self.photos,
             vehicles=tuple(photo.logged(self.log, offset) for photo in self.photos),
             poses=(move(start[0], found[:6]), move(start[1], found[6:12])),
             middle=self.board.points().mean(axis=0),
             residuals=tuple(-misfits.reshape(len(self.photos), -1, 2)),
-            mount_covariance=covariance_of(jacobian, misfits, len(self.photos))[:6, :6],
-            response=response,
+            mount_covariance=weighed.covariance[:6, :6],
+            response=weighed.response[:6],
             clock_offset=offset,
-            clock_sigma=clock_sigma if len(found) > _NUM_POSES else None,
+            clock_sigma=clock_sigma,
         )
 
     def misfits_of(self, fit: HandEyeFit) -> Scalars:
         """Give corner as projected minus corner as found with the poses and clock of a fit [px]."""
         return self._misfits(fit.poses, np.append(np.zeros(_NUM_POSES), fit.clock_offset))
 
-    def _solve(self, start: tuple[Pose, Pose], step: Step) -> tuple[Step, Jacobian]:
-        """Give the best step from the start, and the derivatives there."""
+    def _approach(self, start: tuple[Pose, Pose]) -> Step:
+        """Give the step from the start with all corners alike: near enough to weigh them."""
 
         def misfits(x: Step) -> Scalars:
             return self._misfits(start, x)
@@ -173,13 +175,19 @@ class HandEyeProblem:
         def derive(x: Step) -> Jacobian:
             return self._derive(start, x)
 
-        found = least_squares(misfits, step, jac=derive, x_scale="jac", method="lm").x
-        return found, derive(found)
+        nothing = np.zeros(_NUM_POSES)
+        return least_squares(misfits, nothing, jac=derive, x_scale="jac", method="lm").x
 
-    def _clock_sigma(self, start: tuple[Pose, Pose], step: Step) -> float:
+    def _refine(self, start: tuple[Pose, Pose], step: Step) -> tuple[Step, Weighed]:
+        """Give the best step with photos weighed by their noise, which is told anew each time."""
+        for _ in range(_NUM_ROUNDS):
+            weighed = self._weigh(start, step)
+            step = step - weighed.response @ self._misfits(start, step)
+        return step, self._weigh(start, step)
+
+    def _weigh(self, start: tuple[Pose, Pose], step: Step) -> Weighed:
         jacobian, misfits = self._derive(start, step), self._misfits(start, step)
-        covariance = covariance_of(jacobian, misfits, len(self.photos))
-        return float(np.sqrt(covariance[_NUM_POSES, _NUM_POSES]))
+        return weigh_photos(jacobian, misfits, len(self.photos))
 
     def _misfits(self, start: tuple[Pose, Pose], step: Step) -> Scalars:
         """Give corner as projected minus corner as found, all photos one after another [px]."""
