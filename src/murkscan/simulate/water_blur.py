@@ -13,7 +13,7 @@ import cv2
 import numpy as np
 from jaxtyping import Float, Float32
 
-from ..types.arrays import Pixels, Scalars
+from ..types.arrays import Pixels
 from ..types.laser import Axis
 from .sensor import Picture
 
@@ -21,8 +21,10 @@ _FINEST = 1.5
 """Pixels that a Gaussian has at least, 1σ, on the level on which it is drawn."""
 _RIM_LEVEL = 2
 """First level that reaches beyond the picture: the Gaussians below bring in nothing from there."""
-_RIM = 256
-"""How far it does so, in pixels of the full picture."""
+_RIM = 3.5
+"""How far it does so, in standard deviations of the Gaussian."""
+_TABLED = 3
+"""Coarsest level on which the glow beyond the picture is looked up: coarser ones are averaged."""
 _LAST = 6
 """The coarsest level, of 64 pixels to one."""
 _RESAMPLING = 0.25
@@ -31,10 +33,9 @@ _RESAMPLING = 0.25
 AnyPicture = Float32[np.ndarray, "_ _"]
 """A picture of any size."""
 Weights = Float[np.ndarray, "n k"]
-WeightsAt = Callable[[Pixels], Weights]
-"""From pixels, also beyond the picture, to the weight of each Gaussian there."""
-GlowAt = Callable[[Pixels], Scalars]
-"""From pixels, also beyond the picture, to the light there if nothing stood in its way."""
+GlowAt = Callable[[Pixels], Weights]
+"""From pixels, also beyond the picture, to the light there if nothing stood in its way, times the
+weight of each Gaussian."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,8 +49,10 @@ class Bell:
     weights: AnyPicture
     """Its weight at each pixel of the full picture, made up to whole pixels of the coarsest level,
     relative to the sharp light."""
+    rim: int
+    """Pixels of that level by which it reaches beyond the picture."""
     beyond: AnyPicture
-    """The sheet's own glow, weighted, on that level with its rim, if nothing stood in its way."""
+    """The sheet's own glow, weighted, on that level with that rim, if nothing stood in its way."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,24 +72,30 @@ class WaterBlur:
         axis: Axis,
         *,
         sigmas: tuple[float, ...],
-        weights_at: WeightsAt,
+        weights: Weights,
+        reach: float,
         glow_at: GlowAt,
     ) -> "WaterBlur":
-        """Tabulate the weights of Gaussians whose 1σ is given in pixels of the full picture."""
+        """Tabulate the weights of Gaussians.
+
+        Args:
+            size: Width and height of the picture [px].
+            axis: The laser's axis.
+            sigmas: 1σ of each Gaussian [px].
+            weights: Weight of each Gaussian at each pixel, row by row.
+            reach: How far beyond the picture light counts [px].
+            glow_at: Gives the sheet's own glow, weighted for each Gaussian.
+        """
         width, height = size
-        weights = weights_at(_pixels(height, width, 1, 0)).astype(np.float32)
-        rows, columns = (
-            _cells(side, _RIM_LEVEL) + 2 * _rim(_RIM_LEVEL) for side in (height, width)
-        )
-        around = _pixels(rows, columns, 2**_RIM_LEVEL, _rim(_RIM_LEVEL))
-        glow = (glow_at(around)[:, None] * weights_at(around)).astype(np.float32)
+        weights = weights.astype(np.float32)
         bells = []
         for number, sigma in enumerate(sigmas):
             level = int(np.clip(math.floor(math.log2(sigma / _FINEST)), 0, _LAST))
             own = math.sqrt((sigma / 2**level) ** 2 - (_RESAMPLING if level else 0.0))
-            beyond = _shrink(glow[:, number].reshape(rows, columns), max(level - _RIM_LEVEL, 0))
+            rim = math.ceil(min(_RIM * own, reach / 2**level)) if level >= _RIM_LEVEL else 0
+            beyond = _look_beyond(size, level, rim, number, glow_at)
             own_weights = _fill(weights[:, number].reshape(height, width))
-            bells.append(Bell(level, own, own_weights, beyond))
+            bells.append(Bell(level, own, own_weights, rim, beyond))
         return cls(size, axis, tuple(bells))
 
     def spread_stripe(self, sharp: Picture) -> Picture:
@@ -112,18 +121,19 @@ class WaterBlur:
         free = None if mask is None else _fill(mask)
         for bell in self.bells:
             small = _shrink(whole * bell.weights, bell.level)
-            if bell.level >= _RIM_LEVEL:
+            if bell.rim:
                 small = self._add_rim(small, bell, free)
             side = 2 * math.ceil(3.5 * bell.sigma) + 1
             drawn = cv2.GaussianBlur(
                 small, (side, side), bell.sigma, borderType=cv2.BORDER_REPLICATE
             )
+            drawn = drawn[bell.rim : len(drawn) - bell.rim, bell.rim : drawn.shape[1] - bell.rim]
             before = light[bell.level]
             light[bell.level] = drawn if before is None else before + drawn
         return self._grow(light)
 
     def _add_rim(self, picture: AnyPicture, bell: Bell, mask: AnyPicture | None) -> AnyPicture:
-        rim = _rim(bell.level)
+        rim = bell.rim
         if mask is None:
             across, along = (0, 0, rim, rim), (rim, rim, 0, 0)
             if self.axis == "x":
@@ -137,20 +147,33 @@ class WaterBlur:
 
     def _grow(self, light: list[AnyPicture | None]) -> Picture:
         """Add up the levels, from the coarsest."""
-        total: AnyPicture | None = None
+        width, height = self.size
+        total = np.zeros((_cells(height, _LAST), _cells(width, _LAST)), np.float32)
         for level in range(_LAST, -1, -1):
             own = light[level]
-            if total is not None:
+            if level < _LAST:
                 rows, columns = total.shape
                 total = cv2.resize(total, (2 * columns, 2 * rows), interpolation=cv2.INTER_LINEAR)
-                if level == _RIM_LEVEL - 1:
-                    rim = _RIM >> level
-                    total = total[rim:-rim, rim:-rim]
-                own = total if own is None else total + own
-            total = own
-        width, height = self.size
-        assert total is not None
+            total = total if own is None else total + own
         return total[:height, :width]
+
+
+def _look_beyond(
+    size: tuple[int, int],
+    level: int,
+    rim: int,
+    number: int,
+    glow_at: GlowAt,
+) -> AnyPicture:
+    """Give the weighted glow of one Gaussian on its level with its rim."""
+    if rim == 0:
+        return np.zeros((0, 0), np.float32)
+    fine = min(level, _TABLED)
+    rim <<= level - fine
+    shape = tuple(_cells(side, fine) + 2 * rim for side in (size[1], size[0]))
+    pixels = _pixels((shape[0], shape[1]), fine, rim)
+    weighted = glow_at(pixels)[:, number]
+    return _shrink(weighted.astype(np.float32).reshape(shape), level - fine)
 
 
 def _fill(picture: Picture) -> AnyPicture:
@@ -164,15 +187,10 @@ def _cells(side: int, level: int) -> int:
     return math.ceil(side / 2**_LAST) * 2 ** (_LAST - level)
 
 
-def _rim(level: int) -> int:
-    return _RIM >> level
-
-
-def _pixels(rows: int, columns: int, scale: int, rim: int) -> Pixels:
+def _pixels(shape: tuple[int, int], level: int, rim: int) -> Pixels:
     """Give where the middles of a level's pixels lie in the full picture [px]."""
-    v, u = np.meshgrid(
-        *((np.arange(n) - rim + 0.5) * scale - 0.5 for n in (rows, columns)), indexing="ij"
-    )
+    places = [(np.arange(count) - rim + 0.5) * 2**level - 0.5 for count in shape]
+    v, u = np.meshgrid(*places, indexing="ij")
     return np.stack([u.ravel(), v.ravel()], axis=1)
 
 
