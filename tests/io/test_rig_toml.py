@@ -83,6 +83,22 @@ def test_a_laser_is_replaced_or_added_but_leaves_no_gap(file):
         save_calibration(file, load_rig(file), ["laser", "3"], record={}, lasers={3: laser})
 
 
+INLINE = "laser = [{kind = 'plane', normal = [0, 0, 1], distance_mm = 5}]"
+
+
+@pytest.mark.parametrize("written", ["", "laser = []", INLINE])
+def test_a_laser_is_written_however_the_others_are(tmp_path, written):
+    path = tmp_path / "rig.toml"
+    camera = "[camera]\nsize = [6, 4]\nfocal_length = [5, 5]\nprincipal_point = [3, 2]\n"
+    path.write_text(f"format = 1\n{written}\n{camera}")
+    laser = Laser.from_sheet(Plane(np.array([0.0, 0.6, -0.8]), 0.1))
+    rig = load_rig(path)
+    count = len(rig.lasers)
+    save_calibration(path, rig, ["laser", str(count)], record={}, lasers={count: laser})
+    assert len(load_rig(path).lasers) == count + 1
+    np.testing.assert_array_equal(load_rig(path).lasers[-1].sheet.normal, laser.sheet.normal)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "says"),
     [

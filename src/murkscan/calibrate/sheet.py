@@ -18,6 +18,11 @@ from ..types.pose import Pose
 
 MIN_PHOTOS = 2
 """Photos with a stripe below which there is no sheet: one shows a line only."""
+_PER_PHOTO = 20
+"""Points of a photo that decide where the sheet is looked for, or as many as the shortest stripe
+has, if that is more."""
+_REACH = 4.0
+"""Standard deviations within which a point belongs to the sheet."""
 _MIN_WIDTH = 0.02
 """Width of the stripes' points across the line, over their distance, below which boards are in one
 place: 8 mm at 0.4 m, where a stripe is off by some 0.2 mm already."""
@@ -129,7 +134,7 @@ def fit_sheet(
             "say how far its paper runs on beyond the squares."
         )
     points = tuple(stripe.points(camera, index) for stripe in used)
-    fit = fit_plane(np.concatenate(points))
+    fit = _fit_photos_alike(points)
     ends = np.cumsum([len(p) for p in points])[:-1]
     inliers = tuple(np.split(fit.inliers, ends))
     angle_sigma = _angle_sigma(fit, [p[m] for p, m in zip(points, inliers, strict=True)])
@@ -137,6 +142,19 @@ def fit_sheet(
     sheet = _turn_to_axis(fit.plane)
     residuals = tuple(sheet.distance_to(p) for p in points)
     return SheetFit(sheet, used, points, residuals, inliers, angle_sigma)
+
+
+def _fit_photos_alike(points: Sequence[Float[np.ndarray, "_ 3"]]) -> PlaneFit:
+    """Fit a plane to photos that count alike, however long the stripe is in each.
+
+    Boards near the camera show most of the points, on nearly one line; any plane through that
+    would have half of all points.
+    """
+    count = max(min(map(len, points)), _PER_PHOTO)
+    few = [p[np.linspace(0, len(p) - 1, min(len(p), count)).astype(int)] for p in points]
+    fit = fit_plane(np.concatenate(few))
+    distances = fit.plane.distance_to(np.concatenate(points))
+    return PlaneFit(fit.plane, distances, np.abs(distances) <= max(_REACH * fit.rms, 1e-9))
 
 
 def _turn_to_axis(sheet: Plane) -> Plane:

@@ -6,6 +6,7 @@ from typing import Any
 
 import tomlkit
 from pydantic import ValidationError
+from tomlkit.items import AoT
 
 from ..errors import FormatError, InputError
 from ..types.laser import Laser
@@ -143,7 +144,14 @@ def _update(table: Any, values: dict[str, Any]) -> None:
 
 def _put_laser(document: tomlkit.TOMLDocument, laser: Laser, number: int, path: Path) -> None:
     """Replace laser `number`, or add it as the next one."""
-    lasers = document.setdefault("laser", tomlkit.aot())
+    lasers = document.get("laser")
+    if not isinstance(lasers, AoT):
+        # `laser = []`, or tables in one line, cannot be lengthened by a table of its own.
+        inline = document.pop("laser", [])
+        document["laser"] = tomlkit.aot()
+        lasers = document["laser"]
+        for old in inline:
+            lasers.append(tomlkit.item(dict(old.unwrap())))
     if number > len(lasers):
         raise InputError(
             f"{path} has {len(lasers)} lasers, so the next one is --laser {len(lasers)}, "

@@ -128,7 +128,7 @@ def calibrate_laser_from_photos(
         | record_adjustment(calibration.adjustment, (), verdict)
         | record_laser(calibration.fit)
     )
-    _save(rig_path, calibration, record | {"before": snapshot(tables)}, step)
+    _save(rig_path, calibration, record | {"before": snapshot(tables, laser=laser)}, step)
     draw(rig=calibration.rig, fit=calibration.fit)
     without = tuple(view.name for view in views if not view.is_found)
     adjusted = calibration.adjustment

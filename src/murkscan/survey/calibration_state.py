@@ -14,8 +14,8 @@ from ..io.rig_toml import parse_rig
 def tables_before(tables: dict[str, Any], step: Sequence[str], *, name: str) -> dict[str, Any]:
     """Give the tables of a rig file as they were before a step; as they are if that is new.
 
-    What has been edited since stays edited: the camera is put back only where it is the one that
-    the step left behind.
+    What has been edited since stays edited: the camera, or a laser, is put back only where it is
+    the one that the step left behind.
 
     Args:
         tables: The tables as they are.
@@ -26,7 +26,8 @@ def tables_before(tables: dict[str, Any], step: Sequence[str], *, name: str) -> 
     for word in step:
         record = record.get(word, {})
     before = record.get("before")
-    if before is None or not parse_rig(tables, name=name).covariance.names:
+    covariance = parse_rig(tables, name=name).covariance
+    if before is None or not covariance.names:
         return tables
     restored = copy.deepcopy(tables)
     port = restored["camera"].get("port")
@@ -34,7 +35,8 @@ def tables_before(tables: dict[str, Any], step: Sequence[str], *, name: str) -> 
     if port is not None:
         restored["camera"]["port"] = port
     for number, laser in before.get("laser", {}).items():
-        if int(number) < len(restored.get("laser", [])):
+        is_as_left = any(word.startswith(f"laser[{number}]") for word in covariance.names)
+        if is_as_left and int(number) < len(restored.get("laser", [])):
             restored["laser"][int(number)] = copy.deepcopy(laser)
     restored["calibration"].pop("covariance", None)
     if "covariance" in before:
@@ -42,17 +44,23 @@ def tables_before(tables: dict[str, Any], step: Sequence[str], *, name: str) -> 
     return restored
 
 
-def snapshot(tables: dict[str, Any]) -> dict[str, Any]:
-    """Give what `tables_before` needs, to be kept in a step's record."""
+def snapshot(tables: dict[str, Any], *, laser: int | None = None) -> dict[str, Any]:
+    """Give what `tables_before` needs, to be kept in a step's record.
+
+    Args:
+        tables: The tables of the rig file before the step.
+        laser: Number of the laser that the step calibrates.
+    """
     covariance = tables.get("calibration", {}).get("covariance")
     kept = {"camera": tables["camera"]}
     if covariance is not None:
         kept["covariance"] = covariance
-        lasers = {
-            str(number): laser
-            for number, laser in enumerate(tables.get("laser", []))
-            if any(name.startswith(f"laser[{number}]") for name in covariance["parameters"])
-        }
-        if lasers:
-            kept["laser"] = lasers
+    known = [] if covariance is None else covariance["parameters"]
+    lasers = {
+        str(number): table
+        for number, table in enumerate(tables.get("laser", []))
+        if number == laser or any(name.startswith(f"laser[{number}]") for name in known)
+    }
+    if lasers:
+        kept["laser"] = lasers
     return copy.deepcopy(kept)
