@@ -26,8 +26,10 @@ def tables_before(tables: dict[str, Any], step: Sequence[str], *, name: str) -> 
     for word in step:
         record = record.get(word, {})
     before = record.get("before")
+    if before is None:
+        return tables
     covariance = parse_rig(tables, name=name).covariance
-    if before is None or not covariance.names:
+    if not covariance.names:
         return tables
     restored = copy.deepcopy(tables)
     port = restored["camera"].get("port")
