@@ -1,6 +1,7 @@
 """Small scenes for tests: in clear air, before a PAL camera."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -46,6 +47,19 @@ def standing(*bodies: Body, rig: Rig | None = None, **settings: object) -> Scene
 def wall(distance: float = 0.6, *, albedo: float = 0.2, **settings: object) -> Body:
     """A wall that fills the picture."""
     return body(Plane(8.0, 8.0), (0.0, 0.0, distance), texture=Plain(albedo), **settings)
+
+
+def smaller(scene: Scene, factor: int = 3) -> Scene:
+    """The same scene through a camera of fewer pixels, which is drawn sooner."""
+    camera = scene.rig.camera
+    width, height = (side // factor for side in camera.size)
+    camera = replace(
+        camera,
+        size=(width, height),
+        focal_length=tuple(f / factor for f in camera.focal_length),
+        principal_point=((width - 1) / 2, (height - 1) / 2),
+    )
+    return replace(scene, rig=replace(scene.rig, camera=camera))
 
 
 def hull_scene(num_frames: int = 130) -> Scene:
