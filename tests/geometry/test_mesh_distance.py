@@ -47,3 +47,9 @@ def test_points_of_tiny_triangles_lie_on_them():
     corners = ball.vertices[ball.faces[np.arange(500) * 160]]
     points = np.einsum("nk,nkj->nj", weights, corners)
     np.testing.assert_allclose(distance_to_mesh(points, ball), 0, atol=1e-12)
+
+
+def test_a_triangle_of_no_size_is_a_point():
+    mesh = Mesh(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 0, 0]]))
+    points = np.array([[0.2, 0.2, 1.0], [0.0, 0.0, -2.0]])
+    np.testing.assert_allclose(distance_to_mesh(points, mesh), [1.0, 2.0], atol=1e-9)

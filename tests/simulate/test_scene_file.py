@@ -8,7 +8,7 @@ from murkscan.simulate import Simulator, list_scenes, load_scene, parse_scene, r
 from murkscan.simulate.sensor import Sensor
 
 NAMES = [
-    *(f"{name}{murk}{rig}" for name in ("plane", "hull") for murk in ("", "-c3") for rig in ("", "-hd")),
+    "plane", "plane-c3", "plane-hd", "plane-c3-hd", "hull", "hull-c3", "hull-hd", "hull-c3-hd",
     "sphere-c6", "stairs-c0.3-hd", "chessboard", "chessboard-laser", "demo",
 ]  # fmt: skip
 
@@ -28,20 +28,28 @@ def test_the_list_names_each_scene_with_a_line():
 
 
 BAD = [
-    ("attenuation_per_m = 1.5", "attenuation_per_m = -0.5", "attenuation"),
+    ("attenuation_per_m = 1.5", "attenuation_per_m = -0.5", "water.attenuation_per_m must not"),
+    ("attenuation_per_m = 1.5", "attenuation_per_m = 900", "lower water.attenuation_per_m"),
+    ("attenuation_per_m = 1.5", "attenuation_per_m = 1.5\nmean_cosine = 0.9", "water.mean_cosine"),
+    ("attenuation_per_m = 1.5", "single_scattering_albedo = 0.9", "needs water.attenuation_per_m"),
+    ("albedo = 0.1", 'albedo = "dark"', "surface.albedo: input should be a valid number"),
+    ("width_mm = 3000.0", "width_mm = [1.0, 2.0]", "object.width_mm: input should be"),
+    ("width_mm = 3000.0", 'width_mm = 3000.0\nunit = "mm"', "object.unit is for meshes"),
+    ("peak_grey = 200", "peak_grey = -5", "sensor.peak_grey"),
+    ("peak_grey = 200", "peak_grey = 200\nblack_level = 300", "sensor.black_level"),
     ("attenuation_per_m = 1.5", "attenuation_per_cm = 1.5", "water.attenuation_per_cm is unknown"),
     ("attenuation_per_m = 1.5", 'attenuation_per_m = 1.5\ntype = "Jerlov II"', "water.type"),
-    ("albedo = 0.1", "albedo = 1.7", "surface.texture"),
+    ("albedo = 0.1", "albedo = 1.7", "surface.texture plain.*albedo = 1.7"),
     ("albedo = 0.1", 'texture = "velvet"', "surface.texture must be one of plain, bands"),
     ('mesh = "plane"', 'mesh = "teapot.ply"', "neither a file"),
     ("width_mm = 3000.0", "wide_mm = 3000.0", "object.wide_mm is no key of the plane"),
-    ("position_mm = [0.0, 0.0, 900.0]", "position_mm = [0.0, 0.0, -900.0]", "never meets the object"),
+    ("0.0, 900.0]", "0.0, -900.0]", "never meets the object"),
     ("speed_mm_s = 100.0", "speed_mm_s = 90000.0", "motion.speed_mm_s"),
     ("peak_grey = 200", "peak_grey = 200\nbits = 32", "sensor.bits"),
     ("peak_grey = 200", "peak_grey = 200\npower = 1", "sensor.power is unknown"),
     ("frames = 100", "frames = 0", "motion.frames"),
     ("speed_mm_s = 100.0", 'poses = "nowhere.csv"', "nowhere.csv"),
-    ('file = "rigs/pal.toml"', 'file = "rigs/none.toml"', "none.toml"),
+    ('file = "rigs/pal.toml"', 'file = "rigs/none.toml"', "rig.file: there is no file"),
 ]  # fmt: skip
 
 
@@ -105,3 +113,25 @@ def test_a_sensor_refuses_what_cannot_be():
     ):
         with pytest.raises(InputError, match=words):
             Sensor(**settings)
+
+
+@pytest.mark.parametrize("name", ["hull-c.", "hull-c1.2.3", "chessboard-hd", "teapot"])
+def test_a_name_that_is_none_is_told(name):
+    with pytest.raises((FormatError, InputError), match=r"no scene|no -hd"):
+        load_scene(name)
+
+
+@pytest.mark.parametrize("name", ["chessboard", "chessboard-laser", "stairs", "sphere-c6"])
+def test_shipped_scenes_show_something_and_are_finite(name):
+    simulator = Simulator.of(load_scene(name))
+    frame = simulator.draw_frame(len(simulator.scene) // 2)
+    assert np.isfinite(frame.light.total).all()
+    assert np.isfinite(frame.stripe.snr).all()
+    assert frame.frame.image.max() > 20
+
+
+def test_the_chessboard_s_photos_show_the_board():
+    from murkscan.calibrate import Chessboard, find_board
+
+    frame = Simulator.of(load_scene("chessboard")).draw_frame(3)
+    assert find_board(frame.frame.image, Chessboard(9, 6, 0.03)) is not None

@@ -20,7 +20,7 @@ COLUMNS = [
 
 def _scene(changes=()):
     text, name, folder = read_scene("sphere-c1.5")
-    text = text.replace("frames = 100", "frames = 6").replace("position_mm = [0.0, 200.0,", "position_mm = [0.0, 0.0,")  # fmt: skip
+    text = text.replace("frames = 100", "frames = 6").replace("0.0, 200.0,", "0.0, 0.0,")
     for old, new in changes:
         assert old in text
         text = text.replace(old, new)
@@ -131,3 +131,29 @@ def test_a_scan_of_the_recording_lies_on_the_truth(written, tmp_path):
     assert len(points) > 3000
     # One pixel is 2.5 mm of depth here, and gray gravity is good to about a tenth.
     assert np.median(distance_to_mesh(points[::5], scene.surroundings.mesh, within=0.05)) < 5e-4
+
+
+def test_a_scene_written_with_the_truth_can_be_run_again(tmp_path):
+    from murkscan.simulate import Simulator, as_standalone, load_scene
+
+    text, name, folder = read_scene("chessboard")
+    scene = parse_scene(text, name, folder)
+    (tmp_path / "again.toml").write_text(as_standalone(text, scene.rig, folder))
+    again = load_scene(tmp_path / "again.toml")
+    images = [Simulator.of(one).draw_frame(2).frame.image for one in (scene, again)]
+    np.testing.assert_array_equal(*images)
+
+
+def test_a_folder_is_used_again_but_no_photos_are_lost(tmp_path):
+    out = tmp_path / "out"
+    scene, _ = _scene()
+    simulate_recording(scene, out)
+    shorter, _ = _scene([("frames = 6", "frames = 2")])
+    simulate_recording(shorter, out)
+    assert len(list((out / "frames").glob("*.png"))) == 2
+    assert ms.open_recording(out / "frames", fields="top-first").num_frames == 4
+    (tmp_path / "mine/frames").mkdir(parents=True)
+    (tmp_path / "mine/frames/a.png").write_bytes(b"a photo")
+    with pytest.raises(ms.InputError, match="not of a simulation"):
+        simulate_recording(shorter, tmp_path / "mine")
+    assert (tmp_path / "mine/frames/a.png").read_bytes() == b"a photo"

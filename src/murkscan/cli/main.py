@@ -61,7 +61,7 @@ def run(arguments: list[str]) -> int:
     except (MurkscanError, CycloptsError) as error:
         return _say(str(error), 2)
     except KeyboardInterrupt:
-        return _say("stopped; what is finished is kept, and the same command goes on from it.", 130)
+        return _say("stopped; what is finished is kept. Run the same command again.", 130)
     except OSError as error:
         return _say(f"{error.filename or 'a file'} cannot be used: {error.strerror}.", 2)
     except Exception:

@@ -33,15 +33,16 @@ def simulate(
         raise InputError(
             "Give a scene and a folder: murkscan simulate SCENE OUT; --list shows what is there."
         )
-    from ..simulate import parse_scene, read_scene
+    from ..simulate import as_standalone, parse_scene, read_scene
     from ..survey.simulate import simulate_recording
 
     text, name, folder = read_scene(scene)
+    made_of = parse_scene(text, name, folder)
+    text = as_standalone(text, made_of.rig, folder)
     with progress_bars() as progress:
-        made = simulate_recording(
-            parse_scene(text, name, folder), out, text=text, progress=progress
-        )
-    print(f"recording  {made.recording}: {made.num_frames} frames")
+        made = simulate_recording(made_of, out, text=text, progress=progress)
+    fields = f", {made.num_frames} fields" if made.num_pictures < made.num_frames else ""
+    print(f"recording  {made.recording}: {made.num_pictures} pictures{fields}")
     print(f"rig        {out / 'rig.toml'}")
     print(f"poses      {out / 'poses.csv'}")
     print(f"truth      {out / 'truth'}: {made.num_centres:,} true centres of the stripe")
@@ -56,5 +57,5 @@ def _print_scenes() -> None:
         print(f"{name:{width}}{line}")
     print(
         "\nAdd -c0.3, -c0.5, -c1.5, -c3, -c4, -c5 or -c6 for water of that beam attenuation per "
-        "metre,\nand -hd for a machine-vision rig of 1920 x 1200 px in place of PAL: hull-c3-hd."
+        "metre,\nand (but for chessboards) -hd for a machine-vision rig: hull-c3-hd."
     )

@@ -54,7 +54,8 @@ def _approach(
         if not len(left):
             return
         # trimesh compares products of lengths with fixed numbers: triangles must be of size 1.
-        found = reach * _to_some(points[left] / reach, triangles / reach, which)
+        scale = max(reach, 1e-9)
+        found = scale * _to_some(points[left] / scale, triangles / scale, which)
         distances[left] = np.minimum(distances[left], found)
         more = (away[:, -1] < distances[left] + reach) & (count < len(middles))
         left, count = left[more], min(4 * count, len(middles))

@@ -8,6 +8,7 @@ from .frames import simulate_frames as simulate_frames
 from .line_image import LineImage as LineImage
 from .particles import Particles as Particles
 from .scene import Scene as Scene
+from .scene_file import as_standalone as as_standalone
 from .scene_file import list_scenes as list_scenes
 from .scene_file import load_scene as load_scene
 from .scene_file import parse_scene as parse_scene

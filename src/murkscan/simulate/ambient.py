@@ -4,10 +4,11 @@ import math
 
 import cv2
 import numpy as np
+from jaxtyping import Bool
 
 from ..geometry.ray_casting import Hits
 from ..optics import back_project
-from ..types.arrays import Indices, Mask, Pixels, Scalars
+from ..types.arrays import Indices, Pixels, Scalars
 from ..types.pose import Pose
 from ..types.rays import Rays
 from .lit_line import to_world
@@ -17,6 +18,8 @@ from .sensor import Picture, blur_lens
 
 _CONTRAST = 0.03
 """Share of the brightest by which neighbouring pixels may differ before they are averaged."""
+_ENDLESS = 1e9
+"""Range of what shows no object [m]: finite, so that clear water before it stays clear."""
 _SAMPLES = 16
 """Rays with which a pixel at an edge is looked at again: no two of them share a row or column, so
 that along an edge in any direction they lie evenly."""
@@ -55,9 +58,8 @@ def _shade(scene: Scene, rays: Rays, hits: Hits) -> Scalars:
     """Give what comes along rays, as a share of the radiance of the light around."""
     met = np.flatnonzero(hits.is_hit)
     points = rays.origins[met] + hits.range[met, None] * rays.directions[met]
-    medium = scene.medium
-    left = np.exp(-(medium.attenuation if medium else 0.0) * hits.range)
-    veil = (medium.single_scattering_albedo if medium else 0.0) * (1 - left)
+    left = np.exp(-scene.attenuation * np.minimum(hits.range, _ENDLESS))
+    veil = (scene.medium.single_scattering_albedo if scene.medium else 0.0) * (1 - left)
     normals = scene.surroundings.caster.normals[hits.face[met]]
     facing = np.abs(np.einsum("ij,ij->i", normals, rays.directions[met]))
     veil[met] += (
@@ -66,7 +68,7 @@ def _shade(scene: Scene, rays: Rays, hits: Hits) -> Scalars:
     return veil
 
 
-def _is_uneven(picture: Picture) -> Mask:
+def _is_uneven(picture: Picture) -> Bool[np.ndarray, "h w"]:
     """Tell which pixels differ from a neighbour."""
     around = np.ones((3, 3), np.uint8)
     contrast = cv2.dilate(picture, around) - cv2.erode(picture, around)

@@ -33,7 +33,7 @@ class Light:
     power: float = 0.03
     """Power of each laser's fan [W]."""
     divergence: float = 1.4e-3
-    """Full angle by which the sheet thickens [rad]."""
+    """Full angle by which the sheet thickens in air [rad]."""
     waist: float = 1e-3
     """Thickness of the sheet at its source, full width at 1/e² [m]."""
     ambient: float = 0.0
@@ -41,19 +41,19 @@ class Light:
 
     def __post_init__(self) -> None:
         """Refuse light that cannot be."""
-        if not self.power > 0:
-            raise InputError(f"light.power_mw must be above 0, got {self.power * 1e3:g}.")
+        if not 0 < self.power <= 1e3:
+            raise InputError(
+                f"light.power_mw must lie above 0 and not above 1e6, got {self.power * 1e3:g}."
+            )
         if not (self.waist >= 0 and self.divergence >= 0 and self.waist + self.divergence > 0):
             raise InputError(
                 f"light.waist_mm and light.divergence_mrad must not be below 0, nor both 0, got "
                 f"{self.waist * 1e3:g} and {self.divergence * 1e3:g}."
             )
-        if not self.ambient >= 0:
-            raise InputError(f"light.ambient_w_m2 must not be below 0, got {self.ambient:g}.")
-
-    def thickness(self, ranges: Scalars) -> Scalars:
-        """Give the sheet's thickness [m], one standard deviation of its Gaussian profile."""
-        return np.hypot(self.waist, self.divergence * ranges) / 4
+        if not 0 <= self.ambient <= 1e6:
+            raise InputError(
+                f"light.ambient_w_m2 must lie between 0 and 1e6, got {self.ambient:g}."
+            )
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +82,12 @@ class Beam:
         baseline, _ = laser.as_baseline_angle()
         return cls(Fan.spread(-baseline * axes[at], ahead, along, _HALF_ANGLE), light, index)
 
+    def thickness(self, ranges: Scalars) -> Scalars:
+        """Give the sheet's thickness [m], one standard deviation of its Gaussian profile."""
+        # A window bends light towards its normal: what spreads in air spreads less in water.
+        spread = self.light.divergence / (self.index if self.fan.port else 1.0)
+        return np.hypot(self.light.waist, spread * ranges) / 4
+
     def rays(self, angles: Scalars) -> Rays:
         """Follow the fan's rays at these angles [rad]."""
         return trace_fan(self.fan, angles, self.index)
@@ -106,7 +112,7 @@ class Beam:
 
     def irradiance(self, where: FanCoordinates) -> Scalars:
         """Give the power through a square metre across the beam, in clear water [W/m²]."""
-        thickness = self.light.thickness(where.range)
+        thickness = self.thickness(where.range)
         profile = np.exp(-0.5 * (where.distance / thickness) ** 2)
         line = self.line_power(where.angle, where.range)
         return line * profile / (thickness * math.sqrt(2 * math.pi))

@@ -3,7 +3,9 @@
 import math
 from collections.abc import Mapping
 from dataclasses import fields
-from typing import Any
+from typing import Any, get_type_hints
+
+from pydantic import TypeAdapter, ValidationError
 
 from ..errors import InputError
 from .shapes import Chessboard, Cylinder, Hull, Plane, Sphere, Stairs
@@ -41,31 +43,39 @@ def make_choice(choices: Mapping[str, type], name: str, settings: dict[str, Any]
     if name not in choices:
         raise InputError(f"{key} must be one of {', '.join(choices)}, got {name!r}.")
     keys = {_key_of(field.name): field.name for field in fields(choices[name])}
+    hints = get_type_hints(choices[name])
     values = {}
     for setting, value in settings.items():
+        where = f"{key.rpartition('.')[0]}.{setting}"
         if setting not in keys:
-            raise InputError(
-                f"{key.rpartition('.')[0]}.{setting} is no key of the {name}; it knows "
-                f"{', '.join(keys)}."
-            )
-        scale = 1e-3 if setting.endswith("_mm") else 1.0
-        values[keys[setting]] = _as_value(value, scale, f"{key.rpartition('.')[0]}.{setting}")
+            raise InputError(f"{where} is no key of the {name}; it knows {', '.join(keys)}.")
+        read = _read(hints[keys[setting]], value, where)
+        values[keys[setting]] = _scale(read, 1e-3) if setting.endswith("_mm") else read
     try:
         return choices[name](**values)
     except InputError as error:
-        raise InputError(f"{key} {name}: {error}") from error
+        text = str(error)
+        for field, shown in _RENAMED.items():
+            text = text.replace(f"{field} =", f"{shown} =")
+        raise InputError(f"{key} {name}: {text}") from error
 
 
 def _key_of(field: str) -> str:
     return f"{field}_mm" if field in _LENGTHS else _RENAMED.get(field, field)
 
 
-def _as_value(value: Any, scale: float, key: str) -> Any:
-    """Give a setting in SI; lists become tuples."""
-    if isinstance(value, list):
-        return tuple(_as_value(item, scale, key) for item in value)
-    if scale == 1.0 and isinstance(value, str | int) and not isinstance(value, bool):
-        return value
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise InputError(f"{key} must be a number, got {value!r}.")
-    return value * scale
+def _read(hint: Any, value: Any, key: str) -> Any:
+    """Read a value as the field's type wants it."""
+    try:
+        read = TypeAdapter(hint).validate_python(value)
+    except ValidationError as error:
+        wrong = error.errors(include_url=False)[0]["msg"].lower()
+        raise InputError(f"{key}: {wrong}, got {value!r}.") from error
+    if isinstance(read, float) and not math.isfinite(read):
+        raise InputError(f"{key} must be a finite number, got {value!r}.")
+    return read
+
+
+def _scale(value: Any, scale: float) -> Any:
+    """Give lengths in metres."""
+    return tuple(v * scale for v in value) if isinstance(value, tuple) else value * scale

@@ -22,8 +22,10 @@ _BRIGHTEST = 0.97
 """Quantile of the stripe's peaks by which the exposure is set."""
 _LOOKED_AT = 9
 """Frames, spread over the recording, by which the exposure is set."""
-_FEWEST = 8
-"""Scan lines that must show the stripe for a frame to count as lit."""
+_TRIED = 300
+"""Frames that are tried before a sheet is said never to meet the object."""
+_FAINTEST = 1e-25
+"""Radiance below which no exposure shows anything [W/m²/sr]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +94,7 @@ class Simulator:
         """Draw a frame, with its noise and its truth; it depends on no other frame."""
         light = self.draw_light(number)
         electrons = light.total * self.electrons
-        noise = np.random.default_rng([self.scene.seed, number])
+        noise = np.random.default_rng([self.scene.seed, 0, number])
         image = expose(self.scene.sensor, self.scene.as_field(electrons, number), noise)
         frame = Frame(
             image,
@@ -116,6 +118,9 @@ class Simulator:
         """Give the true centres of one laser, in a frame's scan lines, with what is known."""
         first, step = self.scene.first_row(number), self.scene.row_step
         line, widths, reflected = _join(light)
+        length = self.scene.rig.camera.size["xy".index(self.lasers[laser].scan_lines.laser.axis)]
+        inside = (line.positions > -0.5) & (line.positions < length - 0.5)
+        line, widths, reflected = line[inside], widths[inside], reflected[inside]
         pictures = [light.stripe * self.electrons, light.slope * self.electrons, variance]
         told = np.ones(self.scene.rig.camera.size[0], bool)
         if self.lasers[laser].scan_lines.laser.axis == "y":
@@ -165,7 +170,8 @@ def _lit_frames(scene: Scene, lasers: tuple[LaserView, ...]) -> list[int]:
     shown = [number for number in spread if _is_lit(scene, lasers, number)]
     if shown:
         return shown
-    for number in range(len(scene)):
+    tried = np.unique(np.linspace(0, len(scene) - 1, _TRIED).astype(int)).tolist()
+    for number in tried:
         if _is_lit(scene, lasers, number):
             return [number]
     raise InputError(
@@ -179,9 +185,7 @@ def _is_lit(scene: Scene, lasers: tuple[LaserView, ...], number: int) -> bool:
     caster, pose = scene.surroundings.caster, scene.pose(number)
     for laser in lasers:
         fall = cast_fan(laser.beam, laser.scan_lines, caster, pose)
-        if np.count_nonzero(fall.face >= 0) < _FEWEST:
-            continue
-        if len(find_lit_line(laser.beam, laser.scan_lines, caster, pose, fall)) >= _FEWEST:
+        if len(find_lit_line(laser.beam, laser.scan_lines, caster, pose, fall)):
             return True
     return False
 
@@ -196,9 +200,11 @@ def _electrons(
 ) -> Picture:
     """Give the electrons that 1 W/m²/sr makes in each pixel."""
     camera, sensor = scene.rig.camera, scene.sensor
-    share = sensitivity(sensor, camera.size, camera.focal_length)
+    share = sensitivity(sensor, camera)
     if sensor.peak_grey is None:
-        return share * np.float32(sensor.electrons_per_radiance(scene.rig.wavelength))
+        # Radiance falls by the square of the index where light leaves the water for the lens.
+        in_air = sensor.electrons_per_radiance(scene.rig.wavelength) / scene.index**2
+        return share * np.float32(in_air)
     if lasers:
         peaks = [
             (light.stripe * share).max(axis="yx".index(laser.scan_lines.laser.axis))[
@@ -210,6 +216,11 @@ def _electrons(
     else:
         peaks = [(draw_ambient(scene, 0) * share).ravel()]
     brightest = float(np.quantile(np.concatenate(peaks), _BRIGHTEST))
+    if not brightest > _FAINTEST:
+        raise InputError(
+            "No light of the laser comes back through this water: lower water.attenuation_per_m, "
+            "or bring object.position_mm nearer."
+        )
     return share * np.float32(sensor.peak_grey / sensor.grey_per_electron / brightest)
 
 

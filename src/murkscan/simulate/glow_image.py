@@ -12,8 +12,10 @@ from .stripe_image import Rendering
 
 _BLOCK = 8
 """Pixels from one node to the next at which sight is first tried."""
-_SOFT = 4
-"""Pixels to both sides of a true centre over which the glow's end is drawn."""
+_SOFT = 4.0
+"""Widths to both sides of a true centre over which the glow's end is drawn."""
+_FARTHEST = 100
+"""The same in pixels, at most."""
 
 
 def mask_glow(
@@ -70,7 +72,8 @@ def _try_blocks(
 
 def _soften(mask: Float32[np.ndarray, "lines length"], line: LitLine, widths: Scalars) -> None:
     """Let the glow fade out over the stripe; rows are scan lines, the near side is found there."""
-    offsets = np.arange(-_SOFT, _SOFT + 1)
+    reach = int(min(np.ceil(_SOFT * widths.max(initial=1.0)), _FARTHEST))
+    offsets = np.arange(-reach, reach + 1)
     at = np.rint(line.positions).astype(int)[:, None] + offsets
     inside = (at >= 0) & (at < mask.shape[1])
     at = np.clip(at, 0, mask.shape[1] - 1)

@@ -71,18 +71,17 @@ def _glow_at(scene: Scene, beam: Beam, view: SheetView) -> Scalars:
 def _blur_of(
     scene: Scene, spread: Spread, beam: Beam, scan_lines: ScanLines, view: SheetView
 ) -> WaterBlur:
-    attenuation = scene.medium.attenuation if scene.medium else 0.0
     scale = scan_lines.pixels_per_tangent()
 
     def glow_at(pixels: Pixels) -> Weights:
         there = view_sheet(beam, scan_lines, pixels)
-        return _glow_at(scene, beam, there)[:, None] * _weigh(spread, there, attenuation)
+        return _glow_at(scene, beam, there)[:, None] * _weigh(spread, there, scene.attenuation)
 
     return WaterBlur.of(
         scene.rig.camera.size,
         scan_lines.laser.axis,
         sigmas=tuple(float(width * scale) for width in spread.widths),
-        weights=_weigh(spread, view, attenuation),
+        weights=_weigh(spread, view, scene.attenuation),
         reach=_BEYOND * scale,
         glow_at=glow_at,
     )

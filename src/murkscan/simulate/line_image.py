@@ -86,14 +86,14 @@ def _draw_snow(
     near = view.pose @ places_in_light(laser, mask)
     snow = strew(scene.particles, density, near, time=float(time), seed=scene.seed)
     draw_snow(view, snow, scene.particles.albedo, scene.sensor.psf, mask, image)
-    return blur_lens(image, scene.sensor.composite, 0.0)
+    return blur_lens(image, scene.sensor.composite, scene.sensor.field_blur)
 
 
 def _add_spots(scene: Scene, laser: LaserView, light: LineImage, spots: Picture) -> LineImage:
     """Add the second line to the first."""
     if not len(light.second):
         return light
-    spots = blur_lens(spots, scene.sensor.composite, 0.0)
+    spots = blur_lens(spots, scene.sensor.composite, scene.sensor.field_blur)
     slope = light.slope - _gradient(laser, spots)
     return replace(light, stripe=light.stripe + spots, slope=slope)
 

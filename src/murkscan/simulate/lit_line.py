@@ -18,7 +18,7 @@ from .scan_lines import ScanLines
 
 _RAYS_A_LINE = 3
 """Rays of the fan for each scan line: more than one between two of them, also at the sides."""
-_WIDEST = 40.0
+WIDEST = 40.0
 """Scan lines between two neighbouring rays' hits, above which they are taken as a gap."""
 _ROUNDS = 4
 """Times that the triangle under a centre is looked up again."""
@@ -125,7 +125,7 @@ def cross_scan_lines(scan_lines: ScanLines, number: Indices, points: Points) -> 
     """
     across, along = scan_lines.project(points)
     low, high = np.minimum(across[:-1], across[1:]), np.maximum(across[:-1], across[1:])
-    joined = (np.diff(number) == 1) & (high - low < _WIDEST)
+    joined = (np.diff(number) == 1) & (high - low < WIDEST)
     first = np.clip(np.ceil(np.nan_to_num(low)), 0, scan_lines.count).astype(int)
     last = np.clip(np.floor(np.nan_to_num(high)), -1, scan_lines.count - 1).astype(int)
     times = np.where(joined, np.maximum(last - first + 1, 0), 0)
@@ -178,7 +178,7 @@ def _meet_planes(
         with np.errstate(divide="ignore", invalid="ignore"):
             step = np.where(rise == 0, 0.0, -height_now * (now - before) / rise)
         before, height_before = now, height_now
-        now = now + np.clip(step, -_WIDEST, _WIDEST)
+        now = now + np.clip(step, -WIDEST, WIDEST)
         height_now = height(now)
     return now
 

@@ -1,19 +1,22 @@
 """Marine snow: bright where the sheet cuts it, and gone soon after."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Int
-from scipy.special import ndtri
+from jaxtyping import Int, UInt64
+from scipy.special import ndtri, pdtr
 
 from ..errors import InputError
-from ..types.arrays import Points, Scalars
+from ..types.arrays import Indices, Points, Scalars
 
 _CELL = 0.02
 """Edge of the cubes in which particles are strewn [m]."""
-_MOST = 12
+_MOST = 100
 """Particles that a cube may hold."""
+_THICKEST = 1000.0
+"""Particles that a frame may show: with more, cubes would overflow."""
+_STEP = np.uint64(0x9E3779B97F4A7C15)
+"""The golden ratio, by which neighbouring numbers are driven apart."""
 _SIDE = 2**20
 """Cubes along each axis that can be told apart: 20 km of water."""
 _HALF = _SIDE // 2
@@ -30,7 +33,7 @@ class Particles:
     """
 
     per_frame: float = 0.0
-    """How many the sheet cuts before the object in the first lit frame, on average."""
+    """How many the sheet cuts before the object, on average, in a frame in the middle."""
     diameter: float = 4e-4
     """Median diameter [m]; a third of them are smaller or larger by half as much again."""
     albedo: float = 0.4
@@ -40,9 +43,10 @@ class Particles:
 
     def __post_init__(self) -> None:
         """Refuse snow that cannot be."""
-        if not 0 <= self.per_frame <= 1e5:
+        if not 0 <= self.per_frame <= _THICKEST:
             raise InputError(
-                f"water.particles_per_frame must lie between 0 and 100000, got {self.per_frame:g}."
+                f"water.particles_per_frame must lie between 0 and {_THICKEST:g}, got "
+                f"{self.per_frame:g}."
             )
         if not (0 < self.diameter < 0.1 and 0 <= self.albedo <= 1):
             raise InputError(
@@ -73,14 +77,14 @@ def strew(particles: Particles, density: float, near: Points, *, time: float, se
     """
     moved = np.array(particles.drift) * time
     cells = _cells_around(near - moved)
-    mean = density * _CELL**3
-    chance = _random(cells, seed, 4 * _MOST + 1)
-    count = np.searchsorted(_poisson_table(mean), chance[:, 0], side="right")
+    states = _hash(cells, seed)
+    table = _poisson_table(density * _CELL**3)
+    count = np.searchsorted(table, _draw(states, 0), side="right")
     which = np.repeat(np.arange(len(cells)), count)
     number = np.arange(len(which)) - np.repeat(np.cumsum(count) - count, count)
-    drawn = chance[which[:, None], 1 + 4 * number[:, None] + np.arange(4)]
-    points = (cells[which] + drawn[:, :3]) * _CELL + moved
-    return Snow(points, particles.diameter * np.exp(0.4 * _as_normal(drawn[:, 3])))
+    drawn = [_draw(states[which], 1 + 4 * number + k) for k in range(4)]
+    points = (cells[which] + np.stack(drawn[:3], axis=1)) * _CELL + moved
+    return Snow(points, particles.diameter * np.exp(0.4 * _as_normal(drawn[3])))
 
 
 def _cells_around(points: Points) -> Cells:
@@ -98,18 +102,22 @@ def _distinct(cells: Int[np.ndarray, "n 3"]) -> Cells:
     return np.stack([packed // _SIDE**2, packed // _SIDE % _SIDE, packed % _SIDE], axis=1) - _HALF
 
 
-def _random(cells: Cells, seed: int, count: int) -> np.ndarray:
-    """Give numbers from 0 to 1 that follow from a cube and the seed, a row a cube.
+def _hash(cells: Cells, seed: int) -> UInt64[np.ndarray, " cells"]:
+    """Give a number that follows from a cube's place and the seed."""
+    state = np.full(len(cells), seed % 2**63, np.uint64)
+    for column in cells.T:
+        state = _mix(state + column.astype(np.uint64) + _STEP)
+    return state
+
+
+def _draw(states: UInt64[np.ndarray, " n"], number: Indices | int) -> Scalars:
+    """Give numbers from 0 to 1, each of which follows from a state and its number there.
 
     References:
         Steele, Lea and Flood, Fast splittable pseudorandom number generators, OOPSLA 2014.
     """
-    with np.errstate(over="ignore"):
-        state = np.full(len(cells), seed % 2**63, np.uint64)
-        for column in cells.T:
-            state = _mix(state + column.astype(np.uint64) + np.uint64(0x9E3779B97F4A7C15))
-        steps = np.arange(1, count + 1, dtype=np.uint64) * np.uint64(0x9E3779B97F4A7C15)
-        return (_mix(state[:, None] + steps) >> np.uint64(11)).astype(float) * 2.0**-53
+    steps = (np.asarray(number) + 1).astype(np.uint64) * _STEP
+    return (_mix(states + steps) >> np.uint64(11)).astype(float) * 2.0**-53
 
 
 def _mix(value: np.ndarray) -> np.ndarray:
@@ -120,15 +128,8 @@ def _mix(value: np.ndarray) -> np.ndarray:
 
 def _poisson_table(mean: float) -> Scalars:
     """Give the chance of at most 0, 1, 2 … particles, as many as a cube may hold."""
-    terms = [math.exp(-mean) * mean**k / math.factorial(k) for k in range(_MOST)]
-    return np.cumsum(terms)
+    return pdtr(np.arange(_MOST), mean)
 
 
 def _as_normal(chance: Scalars) -> Scalars:
     return ndtri(np.clip(chance, 1e-12, 1 - 1e-12))
-
-
-def areas_of(snow: Snow, ranges: Scalars, focal_length: tuple[float, float]) -> Scalars:
-    """Give the area of each particle in the picture [px²]."""
-    width, height = (snow.diameters * f / ranges for f in focal_length)
-    return math.pi / 4 * width * height

@@ -39,7 +39,7 @@ def cast_picture(caster: RayCaster, rays: Rays, shape: tuple[int, int]) -> Hits:
     return Hits(face, np.where(face >= 0, ranges, np.inf))
 
 
-def _is_bent(near: Grid) -> Bool[np.ndarray, "rows columns"]:
+def _is_bent(near: Grid) -> Bool[np.ndarray, "down right"]:
     """Tell which blocks, or blocks beside them, are no plane; 1 / range is linear over one."""
     corners = np.stack([near[:-1, :-1], near[1:, 1:], near[1:, :-1], near[:-1, 1:]])
     low, high = corners.min(axis=0), corners.max(axis=0)

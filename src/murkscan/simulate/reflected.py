@@ -1,14 +1,14 @@
 """The second line: light that a glossy surface mirrors onto another, or onto itself."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
 from .._kernels.splat import splat_discs
 from ..types.arrays import Directions, Indices, Points, Scalars
 from ..types.rays import Rays
-from .lit_line import Fall, LitLine, cross_scan_lines, to_world
+from .lit_line import WIDEST, Fall, LitLine, cross_scan_lines, to_world
 from .stripe_image import Picture, Rendering
 
 _OFF = 1e-4
@@ -28,7 +28,9 @@ class Mirrored:
     power: Scalars
     """What is left of it there, for one ray of the fan [W]."""
     away: Directions
-    """The way it came."""
+    """The direction in which it came."""
+    way: Scalars
+    """How far it has come [m]."""
 
 
 def mirror(scene: Rendering, fall: Fall) -> Mirrored:
@@ -48,29 +50,47 @@ def mirror(scene: Rendering, fall: Fall) -> Mirrored:
     points = rays.origins[lands] + hits.range[lands, None] * gone[lands]
     way = fall.ranges[met[lands]] + hits.range[lands]
     power = _power_a_ray(scene, fall)[met[lands]] * gloss[lands] * _through(scene, way)
-    return Mirrored(met[lands], points, hits.face[lands], power, gone[lands])
+    return Mirrored(met[lands], points, hits.face[lands], power, gone[lands], way)
 
 
 def draw_mirrored(scene: Rendering, mirrored: Mirrored, blur: float, image: Picture) -> LitLine:
     """Add the second line's radiance to an image (rows are v), and give its true centres.
 
-    The rays land as close to one another as pixels, so each is drawn as a round spot. The true
-    centres are interpolated between the rays.
+    Where neighbouring rays land apart, their light is spread along the way between; the true
+    centres are interpolated likewise.
     """
     seen = mirrored if not len(mirrored.number) else _keep_seen(scene, mirrored)
     if not len(seen.number):
         nothing = np.zeros(0, int)
         return LitLine(nothing, np.zeros(0), np.zeros((0, 3)), nothing)
-    across, along = scene.scan_lines.project(seen.points)
-    pixels = scene.scan_lines.as_pixels(across, along)
-    known = np.isfinite(across)
-    amounts = _brightness(scene, seen)
-    sigmas = np.full(len(amounts), blur)
-    splat_discs(pixels[known], sigmas[known], amounts[known], image)
+    _draw_between(scene, seen, blur, image)
     found = cross_scan_lines(scene.scan_lines, seen.number, seen.points)
     ends = seen.points[found.before], seen.points[found.before + 1]
     points = ends[0] + found.share[:, None] * (ends[1] - ends[0])
     return LitLine(found.lines, found.positions, points, seen.face[found.before])
+
+
+def _draw_between(scene: Rendering, seen: Mirrored, blur: float, image: Picture) -> None:
+    """Draw spots, half a pixel apart, from each ray's landing place to the next one's."""
+    across, along = scene.scan_lines.project(seen.points)
+    pixels = scene.scan_lines.as_pixels(across, along)
+    amounts, sigmas = _brightness(scene, seen), _widths(scene, seen, blur)
+    gap = np.linalg.norm(np.diff(pixels, axis=0), axis=1)
+    joined = (np.diff(seen.number) == 1) & (gap < WIDEST)
+    count = np.where(joined, np.ceil(2 * np.nan_to_num(gap)) + 1, 0).astype(int)
+    before = np.repeat(np.arange(len(count)), count)
+    step = np.arange(len(before)) - np.repeat(np.cumsum(count) - count, count)
+    share = (step + 0.5) / count[before]
+    places = pixels[before] + share[:, None] * (pixels[before + 1] - pixels[before])
+    light = (amounts[before] + amounts[before + 1]) / 2 / count[before]
+    known = np.isfinite(places[:, 0]) & np.isfinite(light)
+    splat_discs(places[known], sigmas[before][known], light[known], image)
+
+
+def _widths(scene: Rendering, seen: Mirrored, blur: float) -> Scalars:
+    """Give the spots' widths [px], 1σ: the lens's blur, and the sheet's own thickness."""
+    scale = np.sqrt(scene.scan_lines.pixels_per_area(seen.points))
+    return np.hypot(blur, scene.beam.thickness(seen.way) * scale)
 
 
 def _keep_seen(scene: Rendering, mirrored: Mirrored) -> Mirrored:
@@ -83,8 +103,7 @@ def _keep_seen(scene: Rendering, mirrored: Mirrored) -> Mirrored:
     sides = [np.einsum("ij,ij->i", normals, way) for way in (rays.directions, mirrored.away)]
     seen = caster.is_free(to_world(rays, scene.pose), np.nan_to_num(ranges, nan=np.inf))
     seen &= np.nan_to_num(sides[0] * sides[1]) > 0
-    columns = (mirrored.number, mirrored.points, mirrored.face, mirrored.power, mirrored.away)
-    return Mirrored(*(column[seen] for column in columns))
+    return Mirrored(*(getattr(mirrored, column.name)[seen] for column in fields(Mirrored)))
 
 
 def _brightness(scene: Rendering, seen: Mirrored) -> Scalars:
@@ -95,7 +114,7 @@ def _brightness(scene: Rendering, seen: Mirrored) -> Scalars:
     albedo = scene.surroundings.albedo(scene.pose @ seen.points, seen.face)
     normals = scene.surroundings.caster.normals[seen.face] @ scene.pose.rotation
     viewed = np.abs(np.einsum("ij,ij->i", normals, rays.directions))
-    scale = (scene.scan_lines.pixels_per_tangent() / ranges) ** 2
+    scale = scene.scan_lines.pixels_per_area(seen.points)
     return albedo / math.pi * seen.power * viewed * scale * _through(scene, ranges)
 
 
@@ -106,4 +125,4 @@ def _power_a_ray(scene: Rendering, fall: Fall) -> Scalars:
 
 
 def _through(scene: Rendering, way: Scalars) -> Scalars:
-    return np.exp(-(scene.medium.attenuation if scene.medium else 0.0) * way)
+    return np.exp(-scene.attenuation * way)

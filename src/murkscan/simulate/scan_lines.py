@@ -10,6 +10,9 @@ from ..types.camera import Camera
 from ..types.laser import Laser
 from ..types.rays import Rays
 
+_TOUCH = 5e-5
+"""Half the side of a patch whose picture is taken [m]."""
+
 
 @dataclass(frozen=True, eq=False)
 class ScanLines:
@@ -46,6 +49,23 @@ class ScanLines:
     def project(self, points: Points) -> tuple[Scalars, Scalars]:
         """Give scan line and coordinate of points in the camera frame [m]."""
         return self.split(project(self.camera, points, self.index))
+
+    def pixels_per_area(self, points: Points) -> Scalars:
+        """Give the pixels that a square metre takes up which faces the camera [px²/m²].
+
+        Args:
+            points: Where it is, in the camera frame [m].
+        """
+        away = points - self.rays(*self.project(points)).origins
+        away /= np.linalg.norm(away, axis=1, keepdims=True)
+        side = np.cross(away, [0.0, 1.0, 0.0])
+        side /= np.linalg.norm(side, axis=1, keepdims=True)
+        sides = side * _TOUCH, np.cross(away, side) * _TOUCH
+        (ax, ay), (bx, by) = (
+            [b - a for a, b in zip(self.project(points - s), self.project(points + s), strict=True)]
+            for s in sides
+        )
+        return np.abs(ax * by - ay * bx) / (2 * _TOUCH) ** 2
 
     def pixels_per_tangent(self) -> float:
         """Give the pixels that something a metre away and a metre wide takes up, in the middle."""

@@ -18,6 +18,7 @@ from .sensor import Sensor
 from .surface import Body, Surroundings
 from .vehicle import Navigation
 
+_MOST_PIXELS = 50_000_000
 _FAR = 3.0
 """How far from all objects the camera may go, in sizes of the scene or nearest distances."""
 
@@ -55,6 +56,12 @@ class Scene:
         if len(self.times) == 0:
             raise InputError("motion.frames must be at least 1.")
 
+        width, height = self.rig.camera.size
+        if width * height > _MOST_PIXELS:
+            raise InputError(
+                f"rig.camera.size is {width} x {height} px; at most {_MOST_PIXELS / 1e6:g} million "
+                "pixels are drawn."
+            )
         self._check_way()
 
     def _check_way(self) -> None:
@@ -75,6 +82,11 @@ class Scene:
     def __len__(self) -> int:
         """Count the frames; fields are counted."""
         return len(self.times)
+
+    @property
+    def attenuation(self) -> float:
+        """Beam attenuation of the water [1/m]."""
+        return self.medium.attenuation if self.medium else 0.0
 
     @property
     def index(self) -> float:

@@ -12,17 +12,18 @@ from pydantic import ValidationError
 
 from ..errors import FormatError, InputError
 from ..io.poses import load_poses
-from ..io.rig_toml import parse_rig, read_tables
+from ..io.rig_toml import as_tables, parse_rig, read_tables
 from ..io.validation import explain
 from ..types.arrays import Scalars
 from ..types.rig import Rig
 from ..types.trajectory import Trajectory
+from .choices import SHAPES
 from .scene import Scene
 from .scene_tables import MotionTable, ObjectTable, SceneTable
 from .vehicle import drive
 
 _FOLDER = Path(str(resources.files(__package__))) / "scenes"
-_NAME = re.compile(r"(?P<object>[a-z-]+?)(?:-c(?P<murk>[0-9.]+))?(?P<rig>-hd)?")
+_NAME = re.compile(r"(?P<object>[a-z-]+?)(?:-c(?P<murk>\d+(?:\.\d+)?))?(?P<rig>-hd)?")
 _LADDER = {3.0: 200.0, 4.0: 100.0, 5.0: 50.0, 6.0: 24.0}
 """Grey level that the stripe still reaches in water that murky: a lamp of fixed power runs out."""
 _SNOW = 15.0
@@ -33,7 +34,7 @@ def list_scenes() -> dict[str, str]:
     """Give the names of the scenes that ship with the package, and what each is.
 
     To a name may be added `-c3`, for murky water of that beam attenuation per metre, and `-hd`, for
-    the machine-vision rig: `hull-c3-hd`.
+    the machine-vision rig: `hull-c3-hd`; the chessboards and their cameras have no -hd.
     """
     lines = {
         file.stem: file.read_text("utf-8").partition("\n")[0] for file in _FOLDER.glob("*.toml")
@@ -81,9 +82,31 @@ def _vary(text: str, murk: str | None, rig: str | None) -> str:
         document.setdefault("water", tomlkit.table()).update(water)
         document["sensor"]["peak_grey"] = grey
     if rig is not None:
+        if "file" not in document["rig"]:
+            raise InputError("A scene with a rig of its own, such as chessboard, has no -hd.")
         document["rig"]["file"] = "rigs/machine-vision.toml"
         for key in ("interlaced", "composite_px", "psf_px"):
             document["sensor"].pop(key, None)
+    return tomlkit.dumps(document)
+
+
+def as_standalone(text: str, rig: Rig, folder: Path) -> str:
+    """Give a scene's text such that it can be run from any folder.
+
+    Args:
+        text: TOML.
+        rig: Its rig, whose tables take the place of a file.
+        folder: Where the files that it names lie.
+    """
+    document = tomlkit.parse(text)
+    document["rig"] = as_tables(rig)
+    if "poses" in document["motion"]:
+        path = folder / document["motion"]["poses"]
+        document["motion"]["poses"] = str(path.resolve())
+    bodies = document["object"]
+    for body in [bodies] if isinstance(bodies, dict) else bodies:
+        if body["mesh"] not in SHAPES:
+            body["mesh"] = str((folder / body["mesh"]).resolve())
     return tomlkit.dumps(document)
 
 
@@ -146,6 +169,8 @@ def _as_rig(table: SceneTable, name: str, folder: Path) -> Rig:
         if others:
             raise InputError(f"rig.{others[0]} is given beside rig.file; keep one of them.")
         path = folder / str(tables["file"])
+        if not path.is_file():
+            raise InputError(f"rig.file: there is no file {path}.")
         tables, name = read_tables(path), str(path)
     else:
         tables.setdefault("format", 1)
@@ -175,6 +200,11 @@ def _follow_log(
     motion: MotionTable, rig: Rig, folder: Path, interlaced: bool
 ) -> tuple[Scalars, Trajectory]:
     """Go where a pose log says: at its own times, or from its start at the frame rate."""
+    if motion.navigation is not None and motion.navigation.latency_ms:
+        raise InputError(
+            "motion.navigation.latency_ms goes with motion.speed_mm_s: a log that is stamped late "
+            "would not cover a recording that begins and ends with motion.poses."
+        )
     for key in ("speed_mm_s", "along"):
         if getattr(motion, key) is not None:
             raise InputError(f"motion.{key} is given beside motion.poses; keep one of them.")

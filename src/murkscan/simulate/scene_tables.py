@@ -86,6 +86,8 @@ class ObjectTable(OpenTable):
 
     def _as_mesh(self, key: str, folder: Path) -> Mesh:
         if self.mesh in SHAPES:
+            if "unit" in self.model_fields_set:
+                raise InputError(f"{key}.unit is for meshes from files; {self.mesh} is in mm.")
             return make_choice(SHAPES, self.mesh, self.settings, f"{key}.mesh").mesh()
         path = folder / self.mesh
         if not path.is_file():
@@ -110,7 +112,7 @@ class WaterTable(Table):
     attenuation_per_m: FiniteFloat | None = None
     single_scattering_albedo: FiniteFloat | None = None
     phase: Literal["petzold-harbour", "fournier-forand", "henyey-greenstein"] = "petzold-harbour"
-    mean_cosine: FiniteFloat = 0.9
+    mean_cosine: FiniteFloat | None = None
     particles_per_frame: FiniteFloat = 0.0
     particle_diameter_mm: FiniteFloat = 0.4
     particle_albedo: FiniteFloat = 0.4
@@ -121,6 +123,11 @@ class WaterTable(Table):
     def as_water(self) -> Water | None:
         """Give what bends the light; None where the table does not say."""
         if self.index is not None:
+            others = sorted((_STATE - {"index"}) & self.model_fields_set)
+            if others:
+                raise InputError(
+                    f"water.{others[0]} is given beside water.index; keep one of them."
+                )
             return Water(index=self.index)
         if not _STATE & self.model_fields_set:
             return None
@@ -139,8 +146,18 @@ class WaterTable(Table):
                     "water.single_scattering_albedo, or the type."
                 )
             return medium_of(self.type, self._as_phase())
+        if self.mean_cosine is not None and self.phase != "henyey-greenstein":
+            raise InputError(
+                "water.mean_cosine goes with water.phase henyey-greenstein; remove it."
+            )
         if not self.attenuation_per_m:
+            if self.single_scattering_albedo is not None:
+                raise InputError("water.single_scattering_albedo needs water.attenuation_per_m.")
             return None
+        if self.attenuation_per_m < 0:
+            raise InputError(
+                f"water.attenuation_per_m must not be below 0, got {self.attenuation_per_m:g}."
+            )
         albedo = self.single_scattering_albedo
         return Medium(self.attenuation_per_m, 0.83 if albedo is None else albedo, self._as_phase())
 
@@ -156,7 +173,7 @@ class WaterTable(Table):
 
     def _as_phase(self) -> AbstractPhase:
         if self.phase == "henyey-greenstein":
-            return HenyeyGreenstein(self.mean_cosine)
+            return HenyeyGreenstein(0.9 if self.mean_cosine is None else self.mean_cosine)
         return FournierForand() if self.phase == "fournier-forand" else PetzoldHarbour()
 
 

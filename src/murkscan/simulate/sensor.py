@@ -10,6 +10,7 @@ from jaxtyping import Float32
 
 from ..errors import InputError
 from ..types.arrays import Image
+from ..types.camera import Camera
 
 Picture = Float32[np.ndarray, "h w"]
 Colour = Literal["mono", "rggb", "bggr", "grbg", "gbrg"]
@@ -41,6 +42,8 @@ _KEYS = {
 """Names in scene.toml, where they differ."""
 _FACTORS = {"exposure": 1e3, "pixel_size": 1e6}
 """From SI to the unit of that name."""
+_OVEREXPOSED = 100.0
+"""How many times too bright a stripe may be."""
 _RESPONSE = {"r": 0.12, "g": 1.0, "b": 0.25}
 """What a colour filter passes of green laser light, as a share of the green one's."""
 _PHOTON = 6.62607015e-34 * 299792458.0
@@ -102,6 +105,16 @@ class Sensor:
                     f"sensor.{_KEYS.get(name, name)} must lie between {low * factor:g} and "
                     f"{high * factor:g}, got {getattr(self, name) * factor:g}."
                 )
+        if not self.black_level < self.white:
+            raise InputError(
+                f"sensor.black_level must lie below white, {self.white}, got {self.black_level:g}."
+            )
+        room = self.white - self.black_level
+        if self.peak_grey is not None and not 0 < self.peak_grey <= _OVEREXPOSED * room:
+            raise InputError(
+                f"sensor.peak_grey must lie above 0 and not above {_OVEREXPOSED:g} times the grey "
+                f"levels above black, {room:g}, got {self.peak_grey:g}."
+            )
         for name, choices in (("colour", get_args(Colour)), ("codec", get_args(Codec))):
             if getattr(self, name) not in choices:
                 raise InputError(f"sensor.{name} must be one of {', '.join(choices)}.")
@@ -156,15 +169,14 @@ class Sensor:
         return electrons >= min(self.full_well, room)
 
 
-def sensitivity(
-    sensor: Sensor, size: tuple[int, int], focal_length: tuple[float, float]
-) -> Picture:
+def sensitivity(sensor: Sensor, camera: Camera) -> Picture:
     """Give the share of light that each pixel keeps: vignetting and colour filters."""
-    width, height = size
-    u, v = np.meshgrid(np.arange(width) - (width - 1) / 2, np.arange(height) - (height - 1) / 2)
+    width, height = camera.size
+    (cu, cv), (fu, fv) = camera.principal_point, camera.focal_length
+    u, v = np.meshgrid((np.arange(width) - cu) / fu, (np.arange(height) - cv) / fv)
     share = np.ones((height, width))
     if sensor.vignetting:
-        share = (1 + (u / focal_length[0]) ** 2 + (v / focal_length[1]) ** 2) ** -2
+        share = (1 + u**2 + v**2) ** -2
     if sensor.colour != "mono":
         tile = np.array([_RESPONSE[letter] for letter in sensor.colour]).reshape(2, 2)
         share *= np.tile(tile, (height // 2 + 1, width // 2 + 1))[:height, :width]

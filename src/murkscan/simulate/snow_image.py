@@ -10,8 +10,10 @@ from .laser_view import LaserView
 from .particles import Particles, Snow
 from .stripe_image import Picture, Rendering
 
-_THICKNESS = 4.0
-"""Standard deviations of the sheet within which a particle counts as cut by it."""
+_COUNTED = 4.0
+"""Thickness of the sheet within which a particle counts as cut by it [standard deviations]."""
+_DRAWN = 4.0
+"""Distance from the sheet's middle up to which particles are drawn [standard deviations]."""
 _ACROSS, _ALONG = 8, 2
 """Pixels from one place where particles are looked for to the next: along scan lines, where the
 sheet is seen aslant, they must be nearer."""
@@ -30,7 +32,7 @@ def density_for(particles: Particles, laser: LaserView, mask: Picture, reach: fl
     near = (mask > 0.5) & (laser.view.camera_range.reshape(mask.shape) < reach)
     sides = np.gradient(points, axis=0), np.gradient(points, axis=1)
     areas = np.linalg.norm(np.cross(*sides), axis=2)
-    thickness = _THICKNESS * laser.beam.light.thickness(laser.view.laser_range)
+    thickness = _COUNTED * laser.beam.thickness(laser.view.laser_range)
     volume = np.nansum(np.where(near, areas * thickness.reshape(mask.shape), 0.0))
     return particles.per_frame / float(volume) if volume > 0 else 0.0
 
@@ -57,16 +59,20 @@ def draw_snow(
     """
     points = scene.pose.inverse() @ snow.points
     where = scene.beam.locate(points)
-    thickness = scene.beam.light.thickness(np.nan_to_num(where.range))
-    cut = np.flatnonzero(np.abs(where.distance) < _THICKNESS * thickness)
+    thickness = scene.beam.thickness(np.nan_to_num(where.range))
+    cut = np.flatnonzero(np.abs(where.distance) < _DRAWN * thickness)
     points, diameters, where = points[cut], snow.diameters[cut], scene.beam.locate(points[cut])
     across, along = scene.scan_lines.project(points)
     pixels = scene.scan_lines.as_pixels(across, along)
     share = _look_up(mask, pixels)
-    ranges = np.linalg.norm(points, axis=1)
-    size = diameters * scene.scan_lines.pixels_per_tangent() / ranges
-    attenuation = scene.medium.attenuation if scene.medium else 0.0
-    light = scene.beam.irradiance(where) * np.exp(-attenuation * (where.range + ranges))
+    known = np.flatnonzero(np.isfinite(across) & (share > 0))
+    points, diameters, where = points[known], diameters[known], scene.beam.locate(points[known])
+    pixels, share = pixels[known], share[known]
+    ranges = np.linalg.norm(
+        points - scene.scan_lines.rays(across[known], along[known]).origins, axis=1
+    )
+    size = diameters * np.sqrt(scene.scan_lines.pixels_per_area(points))
+    light = scene.beam.irradiance(where) * np.exp(-scene.attenuation * (where.range + ranges))
     amounts = share * light * (albedo / math.pi) * (math.pi / 4) * size**2
     bright = amounts > 0
     sigmas = np.hypot(blur, size / 4)[bright]  # a disc's variance is a sixteenth of its width's

@@ -39,6 +39,11 @@ class Rendering:
     pose: Pose
     """world_from_camera."""
 
+    @property
+    def attenuation(self) -> float:
+        """Beam attenuation of the water [1/m]."""
+        return self.medium.attenuation if self.medium else 0.0
+
 
 def widths_of(scene: Rendering, line: LitLine) -> Scalars:
     """Give how wide the lit line is along its scan line, without any blur [px], 1σ."""
@@ -50,7 +55,7 @@ def widths_of(scene: Rendering, line: LitLine) -> Scalars:
         points = rays.origins + ranges[:, None] * rays.directions
         distances.append(scene.beam.locate(points))
     growth = np.abs(distances[1].distance - distances[0].distance) / (2 * step)
-    thickness = scene.beam.light.thickness(np.nan_to_num(distances[0].range))
+    thickness = scene.beam.thickness(np.nan_to_num(distances[0].range))
     with np.errstate(divide="ignore", invalid="ignore"):
         widths = thickness / growth
     return np.clip(np.nan_to_num(widths, nan=_THICKEST), _THINNEST, _THICKEST)
@@ -121,13 +126,9 @@ def _radiance(scene: Rendering, rays: Rays, hits: Hits) -> Scalars:
     light[bright] *= free
     albedo = scene.surroundings.albedo(scene.pose @ points, hits.face)
     mirrored = _highlight(scene, rays, hits, lit_along, normals)
-    attenuation = scene.medium.attenuation if scene.medium else 0.0
-    return (
-        light
-        * np.abs(facing)
-        * (albedo / math.pi + mirrored)
-        * np.exp(-attenuation * (way + hits.range))
-    )
+    mat = (1 - scene.surroundings.gloss(hits.face)) * albedo / math.pi
+    left = np.exp(-scene.attenuation * (way + hits.range))
+    return light * np.abs(facing) * (mat + mirrored) * left
 
 
 def _highlight(

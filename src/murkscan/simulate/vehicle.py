@@ -14,6 +14,8 @@ _WAVES = 40
 """Sine waves that make up each motion."""
 _STEP = 0.01
 """Time from one pose to the next [s]; between them position and attitude are interpolated."""
+_LONGEST = 20_000.0
+"""Longest unrest [s]: every pose of it is kept."""
 _BEFORE = 2.0
 """Time before and after the recording for which the way is known [s]: logs are stamped late."""
 
@@ -62,8 +64,16 @@ def drive(
         duration: How long the recording is [s].
         seed: Which of all ways.
     """
+    if unrest == Unrest(period=unrest.period):
+        ends = np.array([-_BEFORE, duration + _BEFORE])
+        upright = np.tile([1.0, 0.0, 0.0, 0.0], (2, 1))
+        return Trajectory(ends, start + ends[:, None] * velocity, upright)
+    if duration > _LONGEST:
+        raise InputError(
+            f"motion.frames take {duration:g} s; with motion.vehicle at most {_LONGEST:g} s."
+        )
     times = np.arange(-_BEFORE, duration + _BEFORE, _STEP)
-    random = np.random.default_rng([seed, 1])
+    random = np.random.default_rng([seed, 1, 0])
     waves = np.stack([_wave(times, unrest.period, random) for _ in range(6)], axis=1)
     ahead = velocity / max(float(np.linalg.norm(velocity)), 1e-12)
     sight = np.array([0.0, 0.0, 1.0])
@@ -82,7 +92,10 @@ def _wave(times: Scalars, period: float, random: np.random.Generator) -> Scalars
     power = frequency**-5 * np.exp(-1.25 * (frequency * period) ** -4.0) * np.gradient(frequency)
     amplitude = np.sqrt(2 * power / power.sum())
     phase = random.uniform(0, 2 * math.pi, _WAVES)
-    return np.cos(2 * math.pi * np.outer(times, frequency) + phase) @ amplitude
+    total = np.zeros(len(times))
+    for a, f, p in zip(amplitude, frequency, phase, strict=True):
+        total += a * np.cos(2 * math.pi * f * times + p)
+    return total
 
 
 @dataclass(frozen=True)
@@ -106,6 +119,11 @@ class Navigation:
             )
         if min(self.position_noise, self.attitude_noise) < 0:
             raise InputError("motion.navigation: noise must not be below 0.")
+        if not abs(self.latency) <= _BEFORE:
+            raise InputError(
+                f"motion.navigation.latency_ms must lie between {-1e3 * _BEFORE:g} and "
+                f"{1e3 * _BEFORE:g}, got {1e3 * self.latency:g}."
+            )
 
 
 def log_navigation(navigation: Navigation, truth: Trajectory, *, seed: int) -> Trajectory:
@@ -113,7 +131,7 @@ def log_navigation(navigation: Navigation, truth: Trajectory, *, seed: int) -> T
     count = max(int((truth.times[-1] - truth.times[0]) * navigation.rate) + 1, 2)
     times = truth.times[0] + np.arange(count) / navigation.rate
     poses = truth.at(times[times <= truth.times[-1]])
-    random = np.random.default_rng([seed, 2])
+    random = np.random.default_rng([seed, 2, 0])
     shifts = random.normal(0.0, 1.0, (2, len(poses.times), 3))
     turns = Rotation.from_rotvec(navigation.attitude_noise * shifts[1])
     attitudes = Rotation.from_quat(poses.quaternions, scalar_first=True) * turns

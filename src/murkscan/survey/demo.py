@@ -13,7 +13,7 @@ from ..io.mesh_files import load_mesh
 from ..io.rig_toml import load_rig
 from ..motion import ConstantSpeed
 from ..project import Project, Stage
-from ..simulate import parse_scene, read_scene
+from ..simulate import as_standalone, parse_scene, read_scene
 from ..types.arrays import Scalars
 from .progress import Progress, silent
 from .scan import scan
@@ -67,6 +67,7 @@ def run_demo(out: Path, *, progress: Progress = silent) -> tuple[Project, Errors
     """
     text, name, folder = read_scene(_SCENE)
     scene = parse_scene(text, name, folder)
+    text = as_standalone(text, scene.rig, folder)
     stage = Stage(out / "recording", {"murkscan": version("murkscan"), "scene": text})
     if stage.result() is None:
         since = time.monotonic()

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..errors import InputError
 from ..io.atomic import replacing
 from ..io.images import write_image
 from ..io.mesh_files import save_mesh
@@ -25,6 +26,8 @@ _WORKERS = 2
 """Frames that are drawn at once: drawing waits for its own Python half of the time."""
 _AHEAD = 4
 """Frames that may be ready before they are written: memory stays bounded."""
+_FASTEST = 500.0
+"""Pictures a second that a video's times can tell apart."""
 _PART = 64
 """Frames whose truth is written at once."""
 
@@ -38,6 +41,8 @@ class SimulatedRecording:
 
     recording: Path
     """The folder of pictures, or the video."""
+    num_pictures: int
+    """Pictures kept."""
     num_frames: int
     """Frames, fields counted."""
     num_centres: int
@@ -59,10 +64,11 @@ def simulate_recording(
         progress: Told of each frame.
 
     Raises:
-        InputError: The sheet never meets the object, or the way leaves the scene.
+        InputError: The sheet never meets the object, or the folder holds another recording.
         DeviceError: The disk is full.
     """
     simulator = Simulator.of(scene)
+    _clear(out)
     _write_rig_and_way(scene, out)
     centres = 0
     with (
@@ -86,7 +92,20 @@ def simulate_recording(
     if text is not None:
         with replacing(out / "truth" / "scene.toml") as aside:
             aside.write_text(text, "utf-8")
-    return SimulatedRecording(recording, len(scene), centres)
+    return SimulatedRecording(recording, len(scene) // scene.row_step, len(scene), centres)
+
+
+def _clear(out: Path) -> None:
+    """Take away what an earlier simulation left, and nothing else."""
+    left = [out / "recording.mkv", out / "navigation.csv", out / "frames" / "times.csv"]
+    left += sorted((out / "frames").glob("*.png"))
+    left = [path for path in left if path.exists()]
+    if left and not (out / "truth").is_dir():
+        raise InputError(
+            f"{left[0]} is not of a simulation: there is no {out / 'truth'}. Give another folder."
+        )
+    for path in left:
+        path.unlink()
 
 
 def _draw_ahead(simulator: Simulator) -> Iterator[SimulatedFrame]:
@@ -126,6 +145,11 @@ def _keeping(scene: Scene, out: Path) -> Iterator[tuple[Path, Keep]]:
     if sensor.codec != "png":
         path = out / "recording.mkv"
         rate = 1 / float(np.median(np.diff(pictures))) if len(pictures) > 1 else 25.0
+        if rate > _FASTEST:
+            raise InputError(
+                f"sensor.codec {sensor.codec}: times in milliseconds are too coarse for "
+                f"motion.frame_rate_hz {rate:g}; keep the pictures as png."
+            )
         with writing_video(
             path,
             scene.rig.camera.size,
