@@ -47,8 +47,6 @@ PHASES: dict[str, AbstractPhase] = {
 PEAKED = 4
 """More paths for a sharp phase function, at whose peak a path tracer sparkles."""
 ATTENUATIONS = (1.5, 3.0, 5.0)
-SINGLE = (0.5, 1.5, 3.0)
-"""Waters whose single scattering is compared: murkier, too few paths come through alone."""
 EDGES = np.array([0, 2, 5, 8, 11, 14, 18, 23, 29, 36, 45, 56, 70, 88, 120])
 """Distances from the stripe [px] between which rows are averaged: fine where the profile is steep,
 wide where it is smooth and the path tracer noisy."""
@@ -134,7 +132,7 @@ def measure_clear(clear: np.ndarray) -> Figure:
 def measure_single(mitsuba: Any, unit: float, samples: int) -> Iterator[Figure]:
     """Compare glow and stripe, each the sum of its rows, where light is scattered once at most."""
     for name, phase in PHASES.items():
-        for attenuation in SINGLE:
+        for attenuation in ATTENUATIONS:
             medium = Medium(attenuation, SCATTERED, phase)
             theirs = trace(mitsuba, medium, samples=samples // 4, depth=2)
             ours = render(medium, forward_scattering=False).mean(axis=1)
