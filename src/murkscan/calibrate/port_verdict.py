@@ -1,5 +1,7 @@
 """What the calibration of a port is worth, in plain words, and what to photograph next."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from ..types.arrays import Pixels
@@ -21,64 +23,78 @@ _EXPLAINED = 4.0
 
 def judge_port(calibration: PortCalibration) -> CalibrationVerdict:
     """Judge a port's calibration."""
-    found, rig = calibration.adjustment, calibration.rig
+    rig, found = calibration.rig, calibration.adjustment
     near, middle, far = reach_of(found.camera_from_boards, calibration.sightings)
-    coverage = cover(_corners(calibration), rig.camera.size)
-    advice = []
+    share = shape_sigma(rig, middle) / middle
+    sigma = found.rig.covariance.select([calibration.wanted[2]]).sigma[0]
+    return CalibrationVerdict(
+        (
+            *_on_the_photos(calibration, near, far),
+            *_on_the_fit(calibration),
+            *_on_the_worth(calibration, middle, share),
+        ),
+        f"Good: the port's place is known to {as_read('camera.port.distance', float(sigma))}, and "
+        f"shapes {near * 1e3:.0f} to {far * 1e3:.0f} mm away to {share:.3%} of the range.",
+    )
+
+
+def _on_the_photos(calibration: PortCalibration, near: float, far: float) -> Iterator[str]:
+    """Say what to photograph next; near and far are the boards' distances [m]."""
+    coverage = cover(_corners(calibration), calibration.rig.camera.size)
     if len(calibration.sightings) < _VIEWS:
-        advice.append(f"{len(calibration.sightings)} views are few; take {_VIEWS} or more.")
+        yield f"{len(calibration.sightings)} views are few; take {_VIEWS} or more."
     if coverage.share < _COVERAGE:
-        advice.append(
+        yield (
             f"The corners cover only {coverage.share:.0%} of the picture; take photos with the "
             f"board {coverage.emptiest_place}."
         )
     if far < _RATIO * near:
-        advice.append(
+        yield (
             f"All boards stood {near * 1e3:.0f} to {far * 1e3:.0f} mm away; add photos nearer and "
             "farther: at one distance a port looks like a lens."
         )
-    advice += [
-        f"The photos tell nothing of {name}: it is as it was given."
-        for name in silent_parameters(found, calibration.wanted)
-    ]
+
+
+def _on_the_fit(calibration: PortCalibration) -> Iterator[str]:
+    """Say where the photos disagree with the model, with one another, or with what was known."""
+    found = calibration.adjustment
+    for name in silent_parameters(found, calibration.wanted):
+        yield f"The photos tell nothing of {name}: it is as it was given."
     if calibration.rms > _RMS:
-        advice.append(
+        yield (
             f"The corners are off by {calibration.rms:.2f} px; check that the board is flat, the "
             "photos are sharp, and the kind and the glass of the port are right."
         )
     if found.worth.dispersion > _EXPLAINED:
-        advice.append(
+        yield (
             "Whole photos disagree by more than their corners' noise; check that the board is "
             "flat, and that nothing moved between the photos."
         )
     if contradicts_prior(found):
-        advice.append(
+        yield (
             "The photos contradict what was known before, the camera as calibrated in air or what "
             "was measured, by more than the deviations allow; check the kind, thickness and glass "
             "of the port, the [water], the board's squares, and that focus and zoom are the same."
         )
-    share = shape_sigma(rig, middle) / middle
+
+
+def _on_the_worth(calibration: PortCalibration, middle: float, share: float) -> Iterator[str]:
+    """Say what limits the answer: `share` is the error of shape over the range `middle` [m]."""
     if share > _SHAPE:
-        advice.append(
+        yield (
             f"At {middle * 1e3:.0f} mm shapes are known to {share * middle * 1e3:.2g} mm only; add "
             "photos with the board tilted, near, and out to the corners of the picture."
         )
     if calibration.left_out:
-        advice.append(
+        yield (
             f"{', '.join(calibration.left_out)} fitted far worse than the others and was left out; "
             "look at it."
         )
-    if not any(name.startswith("camera.focal") for name in found.names):
-        advice.append(
+    if not any(name.startswith("camera.focal") for name in calibration.adjustment.names):
+        yield (
             "The camera states no covariance and was taken as exact; calibrate it with `murkscan "
             "calibrate camera` first."
         )
-    sigma = found.rig.covariance.select([calibration.wanted[2]]).sigma[0]
-    return CalibrationVerdict(
-        tuple(advice),
-        f"Good: the port's place is known to {as_read('camera.port.distance', float(sigma))}, and "
-        f"shapes {near * 1e3:.0f} to {far * 1e3:.0f} mm away to {share:.3%} of the range.",
-    )
 
 
 def _corners(calibration: PortCalibration) -> Pixels:
