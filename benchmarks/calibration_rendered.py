@@ -74,6 +74,7 @@ class Outcome:
     corner_in_air: float
     corner_in_water: float
     corner_by_laser: float
+    corner_noise_by_laser: float
     stripe: float
     stripe_crlb: float
     stripe_bias: float
@@ -125,7 +126,7 @@ def calibrate(
     laser = calibrate_laser_from_photos(lines.folder, BOARD, file).calibration
     found, simple = load_rig(file), calibrate_without_port(rig, port.sightings, laser.sightings)
     used = [(camera.sightings(BOARD), dry), (port.sightings, wet), (laser.sightings, lines)]
-    corners = [rms(corner_errors(*pair)) for pair in used]
+    corners = [corner_errors(*pair) for pair in used]
     on_lines, crlb = stripe_errors(laser.sightings, lines)
     pixels, points = sheet_points(rig)
     sea = replace(rig, water=SEA)
@@ -134,13 +135,14 @@ def calibrate(
         error=off(found, pixels, points),
         in_the_sea=off(replace(found, water=SEA), sea_pixels, sea_points),
         stated=relative(spread_of_points(found, 0, pixels), points),
-        bound=bound(rig, [as_true(*pair) for pair in used], corners, rms(on_lines)),
+        bound=bound(rig, [as_true(*pair) for pair in used], [*map(noise, corners)], rms(on_lines)),
         aligned=off_by_shape(found, pixels, points),
         pinhole=off_by_shape(simple, pixels, points),
         pinhole_in_the_sea=off_by_shape(simple, sea_pixels, sea_points),
-        corner_in_air=corners[0],
-        corner_in_water=corners[1],
-        corner_by_laser=corners[2],
+        corner_in_air=rms(corners[0]),
+        corner_in_water=rms(corners[1]),
+        corner_by_laser=rms(corners[2]),
+        corner_noise_by_laser=noise(corners[2]),
         stripe=rms(on_lines),
         stripe_crlb=rms(crlb),
         stripe_bias=float(on_lines.mean()),
@@ -161,8 +163,8 @@ def bound(
     """Give the Cramér-Rao bound of these very photos at the true rig, with the finders' noise."""
     random = np.random.default_rng(0)
     boards, wet, lines = (
-        [disturb(random, one, noise, stripe) for one in some]
-        for some, noise in zip(truths, corners, strict=True)
+        [disturb(random, one, corner, stripe) for one in some]
+        for some, corner in zip(truths, corners, strict=True)
     )
     air = replace(rig, camera=replace(rig.camera, port=None), water=None, lasers=())
     assert rig.camera.port is not None
@@ -187,6 +189,14 @@ def rms(values: Iterable[float] | np.ndarray) -> float:
     return float(np.sqrt(np.mean(np.square(np.asarray(values)))))
 
 
+def noise(errors: np.ndarray) -> float:
+    """Give the standard deviation of errors along u or v, told from the median of their lengths.
+
+    Corners that the line has pulled away are let go by the adjustment, and are no noise to it.
+    """
+    return float(np.median(np.hypot(*errors.T)) / np.sqrt(2 * np.log(2)))
+
+
 def as_figures(
     words: str, outcomes: Sequence[Outcome], bar: float, sea_bar: float | None
 ) -> Iterator[Figure]:
@@ -207,6 +217,7 @@ def as_figures(
         ("corners in air, to the truth", "corner_in_air"),
         ("corners in water, to the truth", "corner_in_water"),
         ("corners in photos of the stripe, to the truth", "corner_by_laser"),
+        ("the same without those that stand out", "corner_noise_by_laser"),
         ("stripe centres, to the truth", "stripe"),
         ("Cramér-Rao bound of stripe centres", "stripe_crlb"),
     )
@@ -231,8 +242,15 @@ wall behind the board) and read from their PNGs by the functions behind `calibra
 file as a ruler gives it, straight and 1 mm off. Errors are those of true sheet points from 0.5
 to 2 m where the stripe is in view, over their range. What the calibration states holds a
 deviation of the water's index of 2e-4 too. The bound is the Cramér-Rao bound at the true rig of
-the photos used, with the finders' own errors as noise. The pinhole is a camera and a plane
-fitted in the fresh water to the same corners and stripes, judged after the best rigid motion.
+the photos used, with the finders' own noise. The pinhole is a camera and a plane fitted in the
+fresh water to the same corners and stripes, judged after the best rigid motion.
+
+In the first draw 13 boards in photos of the stripe behind the flat port, and 14 of the PAL rig,
+are passed over though they are found: the line across the squares pulls the corners beside it
+aside when they are refined, and the grid is then refused as uneven. Where it is not, such
+corners are let go by the adjustment. In 3 and 6 more no stripe is found. The sheets are so told
+by 9 and 5 photos of 25. What stands in air and in water without the line is found with a mean
+error below 0.005 px.
 """
 
 if __name__ == "__main__":
