@@ -20,6 +20,8 @@ from .snow_image import density_for
 
 _BRIGHTEST = 0.97
 """Quantile of the stripe's peaks by which the exposure is set."""
+_SHOWN = 0.1
+"""Share of the brightest pixel above which a pixel of a photo shows the object."""
 _LOOKED_AT = 9
 """Frames, spread over the recording, by which the exposure is set."""
 _TRIED = 300
@@ -214,7 +216,8 @@ def _electrons(
             for laser, light in zip(lasers, frame, strict=True)
         ]
     else:
-        peaks = [(draw_ambient(scene, 0) * share).ravel()]
+        photo = draw_ambient(scene, 0) * share
+        peaks = [photo[photo > _SHOWN * photo.max()]]
     brightest = float(np.quantile(np.concatenate(peaks), _BRIGHTEST))
     if not brightest > _FAINTEST:
         raise InputError(

@@ -19,7 +19,7 @@ from .surface import Body, Surroundings
 from .vehicle import Navigation
 
 _MOST_PIXELS = 50_000_000
-_FAR = 3.0
+_FAR = 10.0
 """How far from all objects the camera may go, in sizes of the scene or nearest distances."""
 
 
