@@ -65,7 +65,7 @@ def glow_error() -> float:
         if light.mask[v, u] == 1.0:
             exact = integrate_glow(scene.medium, laser, float(u), float(v))
             errors.append(abs(light.glow[v, u] / exact - 1))
-    return max(errors)
+    return float(max(errors))
 
 
 def integrate_glow(medium: Medium, laser: object, u: float, v: float) -> float:
