@@ -101,7 +101,7 @@ def frames_per_core_second(name: str, *, count: int = 40) -> float:
 def peak_memory(frames: int) -> float:
     """Largest resident memory of a process that records so many small frames [MB]."""
     code = f"""
-import resource, tempfile, numpy as np
+import tempfile, numpy as np
 from dataclasses import replace
 from pathlib import Path
 from murkscan.simulate import load_scene
@@ -118,7 +118,8 @@ scene = replace(scene, rig=replace(scene.rig, camera=camera), times=times, senso
                 trajectory=way)
 with tempfile.TemporaryDirectory() as folder:
     simulate_recording(scene, Path(folder))
-print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+# Not the resource module's figure: that of a child starts at its parent's.
+print(next(line.split()[1] for line in open("/proc/self/status") if line.startswith("VmHWM")))
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     return int(done.stdout) / 1024
