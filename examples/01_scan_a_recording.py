@@ -1,5 +1,6 @@
 """A whole scan: the main path of the package, on a recording that is simulated first."""
 
+from dataclasses import replace
 from pathlib import Path
 from tempfile import mkdtemp
 
@@ -8,7 +9,8 @@ from murkscan.simulate import load_scene
 from murkscan.survey.simulate import simulate_recording
 
 folder = Path(mkdtemp(prefix="murkscan-"))
-simulate_recording(load_scene("sphere-c0.3"), folder / "recording")
+scene = load_scene("sphere-c0.3")
+simulate_recording(replace(scene, times=scene.times[60:140]), folder / "recording")
 
 # From here on as with a recording of your own.
 rig = ms.load_rig(folder / "recording" / "rig.toml")
