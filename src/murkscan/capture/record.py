@@ -9,6 +9,7 @@ import av
 import numpy as np
 
 from ..errors import DeviceError
+from ..io.video import LOSSLESS
 from .growing import TICKS, RecordingProgress, growing_video
 
 _FORMATS = {
@@ -64,8 +65,7 @@ def _add_stream(container: Any, image: np.ndarray) -> Any:
     stream.height, stream.width = image.shape[:2]
     stream.pix_fmt = _FORMATS[image.ndim, image.dtype.name][1]
     stream.time_base = stream.codec_context.time_base = Fraction(1, TICKS)
-    # Slices of their own let a damaged file lose little, and several cores work at once.
-    stream.codec_context.options = {"level": "3", "slices": "4", "slicecrc": "1", "g": "1"}
+    stream.codec_context.options = LOSSLESS
     stream.thread_type = "SLICE"
     return stream
 

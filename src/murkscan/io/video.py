@@ -13,6 +13,9 @@ from ..errors import DeviceError, InputError
 from .atomic import replacing
 
 VideoCodec = Literal["ffv1", "h264"]
+LOSSLESS = {"level": "3", "slices": "4", "slicecrc": "1", "g": "1"}
+"""FFV1's options: slices of their own let a damaged file lose little, and several cores work at
+once."""
 _TICKS = 90_000
 """Ticks a second of the times; the container rounds them to milliseconds."""
 
@@ -82,7 +85,7 @@ def _open(path: Path, aside: Path) -> Iterator[Any]:
 
 def _options(codec: VideoCodec, crf: int, interlaced: bool) -> dict[str, str]:
     if codec == "ffv1":
-        return {"level": "3", "slices": "4", "slicecrc": "1", "g": "1"}
+        return LOSSLESS
     # One thread, so that the same pictures give the same bytes on every machine.
     options = {"crf": str(crf), "preset": "medium", "threads": "1"}
     return options | ({"flags": "+ilme+ildct", "x264-params": "tff=1"} if interlaced else {})

@@ -74,6 +74,8 @@ class Simulator:
         """
         lasers = tuple(view_laser(scene, number) for number in range(len(scene.rig.lasers)))
         shown = _lit_frames(scene, lasers) if lasers else [0]
+        if scene.sensor.peak_grey is None:  # only the density of particles is asked for
+            shown = [shown[len(shown) // 2]]
         lights = [[draw_laser(scene, laser, number) for laser in lasers] for number in shown]
         densities = tuple(
             density_for(scene.particles, laser, light.mask, _reach(light))

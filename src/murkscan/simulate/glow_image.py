@@ -6,6 +6,7 @@ from jaxtyping import Bool, Float32
 from scipy.special import ndtr
 
 from ..types.arrays import Indices, Mask, Scalars
+from ..types.rays import Rays
 from .lit_line import Fall, LitLine, to_world
 from .sheet_view import SheetView
 from .stripe_image import Rendering
@@ -47,10 +48,7 @@ def mask_glow(
 
 def _is_in_sight(scene: Rendering, view: SheetView, which: Indices) -> Mask:
     """Tell where nothing lies between the camera and the sheet."""
-    width = scene.scan_lines.camera.size[0]
-    rows, columns = np.divmod(which, width)
-    pixels = np.stack([columns, rows], axis=1).astype(float)
-    rays = scene.scan_lines.rays(*scene.scan_lines.split(pixels))
+    rays = Rays(view.origins[which], view.directions[which])
     ranges = np.nan_to_num(view.camera_range[which], nan=np.inf)
     return scene.surroundings.caster.first_hits(to_world(rays, scene.pose)).range > ranges
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..optics.spread import Spread
-from ..types.arrays import Pixels, Points, Scalars
+from ..types.arrays import Pixels, Scalars
 from .beam import Beam
 from .scan_lines import ScanLines
 from .scene import Scene
@@ -39,11 +39,7 @@ class LaserView:
     def rendering(self, scene: Scene, number: int) -> Rendering:
         """Give all that light on a surface depends on in one frame."""
         pose = scene.pose(number)
-        return Rendering(self.beam, self.scan_lines, scene.surroundings, scene.medium, pose)
-
-    def points(self) -> Points:
-        """Give where each pixel sees the sheet, in the camera frame [m]; NaN where it does not."""
-        return self.view.origins + self.view.camera_range[:, None] * self.view.directions
+        return Rendering(self.beam, self.scan_lines, scene.surroundings, scene.attenuation, pose)
 
 
 def view_laser(scene: Scene, number: int) -> LaserView:

@@ -74,7 +74,9 @@ def _draw_between(scene: Rendering, seen: Mirrored, blur: float, image: Picture)
     """Draw spots, half a pixel apart, from each ray's landing place to the next one's."""
     across, along = scene.scan_lines.project(seen.points)
     pixels = scene.scan_lines.as_pixels(across, along)
-    amounts, sigmas = _brightness(scene, seen), _widths(scene, seen, blur)
+    scale = scene.scan_lines.pixels_per_area(seen.points)
+    amounts = _reflected_towards_camera(scene, seen, scene.scan_lines.rays(across, along)) * scale
+    sigmas = np.hypot(blur, scene.beam.thickness(seen.way) * np.sqrt(scale))
     gap = np.linalg.norm(np.diff(pixels, axis=0), axis=1)
     joined = (np.diff(seen.number) == 1) & (gap < WIDEST)
     count = np.where(joined, np.ceil(2 * np.nan_to_num(gap)) + 1, 0).astype(int)
@@ -85,12 +87,6 @@ def _draw_between(scene: Rendering, seen: Mirrored, blur: float, image: Picture)
     light = (amounts[before] + amounts[before + 1]) / 2 / count[before]
     known = np.isfinite(places[:, 0]) & np.isfinite(light)
     splat_discs(places[known], sigmas[before][known], light[known], image)
-
-
-def _widths(scene: Rendering, seen: Mirrored, blur: float) -> Scalars:
-    """Give the spots' widths [px], 1σ: the lens's blur, and the sheet's own thickness."""
-    scale = np.sqrt(scene.scan_lines.pixels_per_area(seen.points))
-    return np.hypot(blur, scene.beam.thickness(seen.way) * scale)
 
 
 def _keep_seen(scene: Rendering, mirrored: Mirrored) -> Mirrored:
@@ -106,16 +102,13 @@ def _keep_seen(scene: Rendering, mirrored: Mirrored) -> Mirrored:
     return Mirrored(*(getattr(mirrored, column.name)[seen] for column in fields(Mirrored)))
 
 
-def _brightness(scene: Rendering, seen: Mirrored) -> Scalars:
-    """Give each ray's light in the picture: radiance times pixel areas [W/m²/sr·px²]."""
-    across, along = scene.scan_lines.project(seen.points)
-    rays = scene.scan_lines.rays(across, along)
+def _reflected_towards_camera(scene: Rendering, seen: Mirrored, rays: Rays) -> Scalars:
+    """Give each ray's light along these rays of the camera: radiance times area [W/sr]."""
     ranges = np.linalg.norm(seen.points - rays.origins, axis=1)
     albedo = scene.surroundings.albedo(scene.pose @ seen.points, seen.face)
     normals = scene.surroundings.caster.normals[seen.face] @ scene.pose.rotation
     viewed = np.abs(np.einsum("ij,ij->i", normals, rays.directions))
-    scale = scene.scan_lines.pixels_per_area(seen.points)
-    return albedo / math.pi * seen.power * viewed * scale * _through(scene, ranges)
+    return albedo / math.pi * seen.power * viewed * _through(scene, ranges)
 
 
 def _power_a_ray(scene: Rendering, fall: Fall) -> Scalars:

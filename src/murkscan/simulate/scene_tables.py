@@ -22,7 +22,7 @@ from ..types.water import Water
 from .beam import Light
 from .choices import SHAPES, TEXTURES, make_choice
 from .particles import Particles
-from .sensor import Codec, Colour, Sensor
+from .sensor import FACTORS, KEYS, Codec, Colour, Sensor
 from .surface import Body
 from .textures import AbstractTexture
 from .vehicle import Navigation, Unrest
@@ -216,12 +216,9 @@ class SensorTable(Table):
 
     def as_sensor(self) -> Sensor:
         """Give the sensor."""
-        renamed = {"full_well_e": "full_well", "read_noise_e": "read_noise", "psf_px": "psf"}
-        renamed |= {"composite_px": "composite", "exposure_ms": "exposure"}
-        renamed |= {"pixel_size_um": "pixel_size"}
-        values = {renamed.get(key, key): value for key, value in self.model_dump().items()}
-        values["exposure"] /= 1e3
-        values["pixel_size"] /= 1e6
+        values = self.model_dump()
+        for field, key in KEYS.items():
+            values[field] = values.pop(key) / FACTORS.get(field, 1.0)
         return Sensor(**values)
 
 

@@ -31,16 +31,16 @@ _BOUNDS = (
     ("crf", 0, 51),
 )
 """What cameras there are; a blur below 0.3 px would be sharper than its own pixels."""
-_KEYS = {
+KEYS = {
     "full_well": "full_well_e",
     "read_noise": "read_noise_e",
     "psf": "psf_px",
     "composite": "composite_px",
     "exposure": "exposure_ms",
-    "pixel_size": "pixel_um",
+    "pixel_size": "pixel_size_um",
 }
 """Names in scene.toml, where they differ."""
-_FACTORS = {"exposure": 1e3, "pixel_size": 1e6}
+FACTORS = {"exposure": 1e3, "pixel_size": 1e6}
 """From SI to the unit of that name."""
 _OVEREXPOSED = 100.0
 """How many times too bright a stripe may be."""
@@ -100,9 +100,9 @@ class Sensor:
         """Refuse a sensor that cannot be."""
         for name, low, high in _BOUNDS:
             if not low <= getattr(self, name) <= high:
-                factor = _FACTORS.get(name, 1.0)
+                factor = FACTORS.get(name, 1.0)
                 raise InputError(
-                    f"sensor.{_KEYS.get(name, name)} must lie between {low * factor:g} and "
+                    f"sensor.{KEYS.get(name, name)} must lie between {low * factor:g} and "
                     f"{high * factor:g}, got {getattr(self, name) * factor:g}."
                 )
         if not self.black_level < self.white:
@@ -159,9 +159,13 @@ class Sensor:
 
     def variance(self, electrons: Picture) -> Picture:
         """Give the variance of pixels that hold this many electrons on average [electrons²]."""
-        rounding = 1 / (12 * self.grey_per_electron**2)
         shot = electrons if self.shot_noise else np.zeros_like(electrons)
-        return shot + np.float32(self.read_noise**2 + rounding)
+        return shot + np.float32(self.read_noise**2 + self.rounding)
+
+    @property
+    def rounding(self) -> float:
+        """Variance of rounding to grey levels [electrons²]."""
+        return 1 / (12 * self.grey_per_electron**2)
 
     def is_full(self, electrons: Picture) -> np.ndarray:
         """Tell which pixels show white whatever more light falls on them."""
@@ -201,7 +205,7 @@ def expose(sensor: Sensor, electrons: Picture, noise: np.random.Generator) -> Im
     reading is the larger.
     """
     if sensor.read_noise > 0 or sensor.shot_noise:
-        spread = np.sqrt(sensor.variance(electrons) - _rounding(sensor))
+        spread = np.sqrt(sensor.variance(electrons) - np.float32(sensor.rounding))
         electrons = electrons + spread * noise.standard_normal(electrons.shape, np.float32)
     electrons = np.minimum(electrons, np.float32(sensor.full_well))
     grey = np.rint(electrons * np.float32(sensor.grey_per_electron) + sensor.black_level)
@@ -218,10 +222,6 @@ def as_colour(picture: Image, colour: Colour) -> np.ndarray:
         "gbrg": cv2.COLOR_BayerGR2RGB,
     }
     return cv2.cvtColor(picture, codes[colour])
-
-
-def _rounding(sensor: Sensor) -> np.float32:
-    return np.float32(1 / (12 * sensor.grey_per_electron**2))
 
 
 def _kernel_size(sigma: float) -> int:

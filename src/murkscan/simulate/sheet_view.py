@@ -31,6 +31,11 @@ class SheetView:
         return SheetView(*(getattr(self, column.name)[which] for column in fields(self)))
 
     @property
+    def points(self) -> Points:
+        """Where the sheet is seen, in the camera frame [m]."""
+        return self.origins + self.camera_range[:, None] * self.directions
+
+    @property
     def is_seen(self) -> Mask:
         """Tell which pixels see the sheet."""
         return np.isfinite(self.camera_range + self.laser_range)

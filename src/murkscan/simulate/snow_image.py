@@ -28,7 +28,7 @@ def density_for(particles: Particles, laser: LaserView, mask: Picture, reach: fl
         mask: Share of each pixel's sheet that is lit and in sight.
         reach: Range of the farthest that the sheet meets [m]: beyond it particles do not count.
     """
-    points = laser.points().reshape(*mask.shape, 3)
+    points = laser.view.points.reshape(*mask.shape, 3)
     near = (mask > 0.5) & (laser.view.camera_range.reshape(mask.shape) < reach)
     sides = np.gradient(points, axis=0), np.gradient(points, axis=1)
     areas = np.linalg.norm(np.cross(*sides), axis=2)
@@ -40,8 +40,8 @@ def density_for(particles: Particles, laser: LaserView, mask: Picture, reach: fl
 def places_in_light(laser: LaserView, mask: Picture) -> Points:
     """Give places of the sheet, in the camera frame [m], around which particles may be seen."""
     steps = (_ALONG, _ACROSS) if laser.scan_lines.laser.axis == "y" else (_ACROSS, _ALONG)
-    points = laser.points().reshape(*mask.shape, 3)[:: steps[0], :: steps[1]]
-    return points[mask[:: steps[0], :: steps[1]] > 0.0]
+    tried = np.arange(mask.size).reshape(mask.shape)[:: steps[0], :: steps[1]]
+    return laser.view[tried[mask[:: steps[0], :: steps[1]] > 0.0]].points
 
 
 def draw_snow(
@@ -59,14 +59,15 @@ def draw_snow(
     """
     points = scene.pose.inverse() @ snow.points
     where = scene.beam.locate(points)
-    thickness = scene.beam.thickness(np.nan_to_num(where.range))
-    cut = np.flatnonzero(np.abs(where.distance) < _DRAWN * thickness)
-    points, diameters, where = points[cut], snow.diameters[cut], scene.beam.locate(points[cut])
-    across, along = scene.scan_lines.project(points)
+    cut = np.flatnonzero(
+        np.abs(where.distance) < _DRAWN * scene.beam.thickness(np.nan_to_num(where.range))
+    )
+    across, along = scene.scan_lines.project(points[cut])
     pixels = scene.scan_lines.as_pixels(across, along)
     share = _look_up(mask, pixels)
     known = np.flatnonzero(np.isfinite(across) & (share > 0))
-    points, diameters, where = points[known], diameters[known], scene.beam.locate(points[known])
+    shown = cut[known]
+    points, diameters, where = points[shown], snow.diameters[shown], where[shown]
     pixels, share = pixels[known], share[known]
     ranges = np.linalg.norm(
         points - scene.scan_lines.rays(across[known], along[known]).origins, axis=1

@@ -8,7 +8,6 @@ from jaxtyping import Float32
 
 from .._kernels.splat import LineSplats, splat_on_lines
 from ..geometry.ray_casting import Hits
-from ..optics.medium import Medium
 from ..types.arrays import Points, Scalars
 from ..types.pose import Pose
 from ..types.rays import Rays
@@ -35,14 +34,10 @@ class Rendering:
     beam: Beam
     scan_lines: ScanLines
     surroundings: Surroundings
-    medium: Medium | None
+    attenuation: float
+    """Beam attenuation of the water [1/m]."""
     pose: Pose
     """world_from_camera."""
-
-    @property
-    def attenuation(self) -> float:
-        """Beam attenuation of the water [1/m]."""
-        return self.medium.attenuation if self.medium else 0.0
 
 
 def widths_of(scene: Rendering, line: LitLine) -> Scalars:

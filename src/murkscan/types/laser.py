@@ -7,7 +7,7 @@ from typing import Literal, final
 import numpy as np
 
 from ..errors import InputError
-from .arrays import Scalars, Vector
+from .arrays import Indices, Mask, Scalars, Vector
 from .plane import Plane
 from .port import FlatPort, Port
 
@@ -104,6 +104,10 @@ class FanCoordinates:
     """How far along that ray from its start, outside the port [m]."""
     distance: Scalars
     """Signed distance from the sheet [m], positive on the side of the fan's plane's normal."""
+
+    def __getitem__(self, which: Mask | Indices) -> "FanCoordinates":
+        """Pick some of the points."""
+        return FanCoordinates(self.angle[which], self.range[which], self.distance[which])
 
 
 @dataclass(frozen=True, eq=False)
