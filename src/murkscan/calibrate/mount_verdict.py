@@ -3,7 +3,7 @@
 import numpy as np
 
 from .hand_eye import MountCalibration
-from .verdict import CalibrationVerdict
+from .verdict import CalibrationVerdict, advise_on_left_out
 
 _PHOTOS = 15
 """Photos asked for."""
@@ -37,9 +37,7 @@ def judge_mount(calibration: MountCalibration) -> CalibrationVerdict:
             f"The camera's place is known to {shift_sigma * 1e3:.2f} mm only; add photos with the "
             "vehicle turned more, about two different axes."
         )
-    if calibration.left_out:
-        names = ", ".join(view.name for view in calibration.left_out)
-        advice.append(f"{names} fitted far worse than the others and was left out; look at it.")
+    advice += advise_on_left_out([view.name for view in calibration.left_out])
     return CalibrationVerdict(
         tuple(advice),
         f"Good: the circles close to {calibration.closure * 1e3:.2f} mm at "

@@ -9,7 +9,7 @@ from .coverage import cover
 from .limits import as_read, contradicts_prior, silent_parameters
 from .port import PortCalibration
 from .reach import reach_of, shape_sigma
-from .verdict import CalibrationVerdict
+from .verdict import CalibrationVerdict, advise_on_left_out
 
 _VIEWS, _COVERAGE, _RMS = 15, 0.5, 0.5
 """Views, share of the picture, and RMS [px] that are asked for, as for a camera."""
@@ -85,11 +85,7 @@ def _on_the_worth(calibration: PortCalibration, middle: float, share: float) -> 
             f"At {middle * 1e3:.0f} mm shapes are known to {share * middle * 1e3:.2g} mm only; add "
             "photos with the board tilted, near, and out to the corners of the picture."
         )
-    if calibration.left_out:
-        yield (
-            f"{', '.join(calibration.left_out)} fitted far worse than the others and was left out; "
-            "look at it."
-        )
+    yield from advise_on_left_out(calibration.left_out)
     if not any(name.startswith("camera.focal") for name in calibration.adjustment.names):
         yield (
             "The camera states no covariance and was taken as exact; calibrate it with `murkscan "

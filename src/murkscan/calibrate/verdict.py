@@ -1,5 +1,6 @@
 """What a calibration is worth, in plain words, and what to photograph next."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -67,14 +68,19 @@ def judge_camera(calibration: CameraCalibration) -> CalibrationVerdict:
             f"The corners are off by {calibration.rms:.2f} px; check that the board is flat and "
             "the photos are sharp."
         )
-    if calibration.left_out:
-        names = ", ".join(view.name for view in calibration.left_out)
-        advice.append(f"{names} fitted far worse than the others and was left out; look at it.")
+    advice += advise_on_left_out([view.name for view in calibration.left_out])
     return CalibrationVerdict(
         tuple(advice),
         f"Good: the focal length is known to {focal_sigma:.2%}, and corners cover "
         f"{coverage.share:.0%} of the picture.",
     )
+
+
+def advise_on_left_out(names: Sequence[str]) -> list[str]:
+    """Say which photos fitted too badly to count, if there are any."""
+    if not names:
+        return []
+    return [f"{', '.join(names)} fitted far worse than the others and was left out; look at it."]
 
 
 def judge_sheet(calibration: SheetFit) -> CalibrationVerdict:

@@ -1,6 +1,5 @@
 """murkscan calibrate check: measure a known length."""
 
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -8,6 +7,7 @@ from ..errors import InputError
 from .calibrate import parse_board
 from .calibrate_laser import parse_margin
 from .choices import ExtractorName, make_extractor
+from .options import read_numbers
 from .progress import progress_bars
 from .words import print_table, say, say_verdict
 
@@ -104,11 +104,8 @@ def _check_scan(out: Path, length_mm: float, sigma_mm: float, ends: tuple[str, s
 
 def _place(text: str) -> list[float]:
     """Read the X,Y,Z of --from-m or --to-m [m]."""
-    try:
-        place = [float(part) for part in text.split(",")]
-    except ValueError:
-        place = []
-    if len(place) != 3 or not all(math.isfinite(part) for part in place):
+    place = read_numbers(text, 3)
+    if place is None:
         raise InputError(
             f"{text!r} is not X,Y,Z; give three numbers of metres, such as 0.12,0.5,0.803."
         )

@@ -8,6 +8,7 @@ from ..errors import InputError
 from .calibrate import parse_board
 from .calibrate_port import print_parameters, say_photos
 from .choices import ExtractorName, make_extractor
+from .options import read_numbers
 from .progress import progress_bars
 from .words import print_table, say, say_verdict
 
@@ -98,18 +99,15 @@ def laser(
 
 def parse_margin(text: str) -> "Margin":
     """Make the margin of --margin-mm."""
-    try:
-        sides = [float(side) / 1e3 for side in text.split(",")]
-    except ValueError:
-        sides = []
-    if len(sides) != 4 or not all(math.isfinite(side) for side in sides):
+    sides = read_numbers(text, 4)
+    if sides is None:
         raise InputError(
             f"--margin-mm {text!r} is not LEFT,RIGHT,TOP,BOTTOM; give four numbers of millimetres, "
             "such as 120,80,60,60."
         )
     from ..calibrate import Margin
 
-    return Margin(*sides)
+    return Margin(*(side / 1e3 for side in sides))
 
 
 def _print_laser(result: "LaserResult", rig: Path) -> None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from ..errors import InputError
 from .calibrate import parse_board
-from .options import read_start_time
+from .options import read_numbers, read_start_time
 from .progress import progress_bars
 from .words import print_table, say, say_verdict
 
@@ -74,11 +74,8 @@ def mount(
 
 def _place(text: str, sigma_mm: float) -> "MeasuredPlace":
     """Make the measured place of --measured-mm."""
-    try:
-        place = [float(part) / 1e3 for part in text.split(",")]
-    except ValueError:
-        place = []
-    if len(place) != 3 or not all(math.isfinite(part) for part in place):
+    place = read_numbers(text, 3)
+    if place is None:
         raise InputError(
             f"--measured-mm {text!r} is not X,Y,Z; give three numbers of millimetres, such as "
             "120,0,-35."
@@ -87,7 +84,7 @@ def _place(text: str, sigma_mm: float) -> "MeasuredPlace":
 
     from ..calibrate.hand_eye import MeasuredPlace
 
-    return MeasuredPlace(np.array(place), sigma_mm / 1e3)
+    return MeasuredPlace(np.array(place) / 1e3, sigma_mm / 1e3)
 
 
 def _print_mount(result: "MountResult", rig: Path) -> None:

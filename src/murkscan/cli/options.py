@@ -1,5 +1,6 @@
 """Flags that several commands share."""
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -84,6 +85,15 @@ class MotionFlags:
             raise InputError("--start-time and --time-offset-s go with --poses; leave them out.")
         if self.poses is not None and self.along is not None:
             raise InputError("--along goes with --speed-mm-s or --step-mm; leave it out.")
+
+
+def read_numbers(text: str, count: int) -> list[float] | None:
+    """Read finite numbers that commas part; None where they are no numbers, or not so many."""
+    try:
+        numbers = [float(number) for number in text.split(",")]
+    except ValueError:
+        return None
+    return numbers if len(numbers) == count and all(map(math.isfinite, numbers)) else None
 
 
 def read_start_time(text: str) -> float:
