@@ -1,0 +1,125 @@
+"""What the judge of finders shows them: a hull in ever murkier water, and other waters beside."""
+
+import shutil
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from murkscan.capture import AbstractRecording, open_recording
+from murkscan.io.parquet import load_true_stripe
+from murkscan.io.rig_toml import load_rig
+from murkscan.optics.phase_henyey_greenstein import HenyeyGreenstein
+from murkscan.simulate import Body, Scene, load_scene
+from murkscan.simulate.textures.growth import Growth
+from murkscan.survey.simulate import simulate_recording
+from murkscan.types.rig import Rig
+from murkscan.types.true_stripe import TrueStripe
+
+RUNGS = ("c0.3", "c0.5", "c1.5", "c3", "c4", "c5", "c6")
+HD = tuple(f"{rung}-hd" for rung in RUNGS)
+_AMBIENT = 0.01
+"""Daylight that raises the wet background of c = 3 /m to some 50 grey levels [W/m²]."""
+_GLOSS = 0.15
+_READ_NOISE = 25.0
+_SCATTERED = 0.95
+"""Single scattering albedo of other water: half as broad a skirt again as with 0.83."""
+
+
+def _with_gloss(scene: Scene) -> Scene:
+    return replace(scene, bodies=tuple(replace(body, gloss=_GLOSS) for body in scene.bodies))
+
+
+def _with_medium(**changed: object) -> Callable[[Scene], Scene]:
+    return lambda scene: replace(scene, medium=replace(scene.medium, **changed))
+
+
+def _with_sensor(**changed: object) -> Callable[[Scene], Scene]:
+    return lambda scene: replace(scene, sensor=replace(scene.sensor, **changed))
+
+
+OTHERS: dict[str, Callable[[Scene], Scene]] = {
+    "c3-ambient": lambda scene: replace(scene, light=replace(scene.light, ambient=_AMBIENT)),
+    "c3-gloss": _with_gloss,
+    "c3-h264": _with_sensor(codec="h264", crf=23),
+    "c3-phase": _with_medium(phase=HenyeyGreenstein(0.9)),
+    "c3-skirt": _with_medium(single_scattering_albedo=_SCATTERED),
+    "c3-noise": _with_sensor(read_noise=_READ_NOISE),
+}
+"""Cases at c = 3 /m beside the ladder, and what is changed for each."""
+CASES = (*RUNGS, *OTHERS, *HD)
+
+
+@dataclass(frozen=True)
+class Part:
+    """One case with one seed, so many pictures long."""
+
+    case: str
+    seed: int
+    pictures: int
+
+    @property
+    def name(self) -> str:
+        """Name of its folder in the cache."""
+        return f"{self.case}-seed{self.seed}-{self.pictures}"
+
+    def scene(self) -> Scene:
+        """Make the scene: pictures from the middle of the hull, with paint of the seed's own."""
+        ladder = self.case if self.case in RUNGS + HD else "c3"
+        scene = load_scene(f"hull-{ladder}")
+        rows, middle = scene.row_step, len(scene) // (2 * scene.row_step)
+        first = middle - self.pictures // 2
+        scene = replace(
+            scene,
+            seed=self.seed,
+            bodies=tuple(_repaint(body, self.seed) for body in scene.bodies),
+            times=scene.times[rows * first : rows * (first + self.pictures)],
+            sensor=replace(scene.sensor, codec="ffv1"),
+        )
+        return OTHERS.get(self.case, lambda same: same)(scene)
+
+    def recorded(self, cache: Path) -> "Recorded":
+        """Give the recording, drawn if the cache does not hold it whole."""
+        folder = cache / self.name
+        if not (folder / "truth" / "mesh.ply").exists():  # what is written last
+            shutil.rmtree(folder, ignore_errors=True)
+            simulate_recording(self.scene(), folder)
+        return Recorded(folder, is_interlaced=not self.case.endswith("-hd"))
+
+
+def _repaint(body: Body, seed: int) -> Body:
+    texture = body.texture
+    return (
+        replace(body, texture=replace(texture, seed=seed)) if isinstance(texture, Growth) else body
+    )
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """A folder that holds a recording and its truth."""
+
+    folder: Path
+    is_interlaced: bool
+
+    @property
+    def recording(self) -> AbstractRecording:
+        """The pictures."""
+        path = self.folder / "recording.mkv"
+        return open_recording(path, fields="top-first" if self.is_interlaced else "progressive")
+
+    @property
+    def rig(self) -> Rig:
+        """The true rig."""
+        return load_rig(self.folder / "rig.toml")
+
+    @property
+    def truth(self) -> TrueStripe:
+        """The true centres."""
+        return load_true_stripe(self.folder / "truth" / "stripes.parquet")
+
+
+def parts_of(cases: list[str], seeds: list[int], pictures: int, pictures_hd: int) -> Iterator[Part]:
+    """Give the parts in the order of the cases: of HD the first seed alone, and fewer pictures."""
+    for case in cases:
+        is_hd = case in HD
+        for seed in seeds[:1] if is_hd or case in OTHERS else seeds:
+            yield Part(case, seed, pictures_hd if is_hd else pictures)
