@@ -10,7 +10,7 @@ NAMES = {
     "EstimationError", "FormatError", "Frame", "GaussianFit", "GrayGravity", "GridMesh",
     "InputError", "Laser", "Mesh", "MissingDependency", "MissingResult", "MurkscanError",
     "NotConverged", "NotEnoughData", "Plane", "PointCloud", "Poisson", "Pose", "PoseLog", "Profile",
-    "Project", "RaySheet", "Rig", "Steger", "Stripe", "ThresholdSkeleton", "Trajectory",
+    "Murk", "Project", "RaySheet", "Rig", "Steger", "Stripe", "ThresholdSkeleton", "Trajectory",
     "load_poses", "load_rig", "open_recording", "save_rig", "scan",
 }  # fmt: skip
 

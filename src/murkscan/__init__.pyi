@@ -11,6 +11,7 @@ from .errors import NotConverged as NotConverged
 from .errors import NotEnoughData as NotEnoughData
 from .extract import GaussianFit as GaussianFit
 from .extract import GrayGravity as GrayGravity
+from .extract import Murk as Murk
 from .extract import Steger as Steger
 from .extract import ThresholdSkeleton as ThresholdSkeleton
 from .io.poses import load_poses as load_poses

@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 
 from murkscan.errors import InputError
-from murkscan.extract import GaussianFit, GrayGravity, Steger, ThresholdSkeleton, learn_noise
-from murkscan.types.background import Background
+from murkscan.extract import GaussianFit, GrayGravity, Murk, Steger, ThresholdSkeleton, learn_noise
 from murkscan.types.camera import Camera
 from murkscan.types.frame import Frame
 from murkscan.types.laser import Laser
 from murkscan.types.rig import Rig
 
-SUB_PIXEL = [GrayGravity(), GaussianFit(), Steger()]
+SUB_PIXEL = [GrayGravity(), GaussianFit(), Steger(), Murk()]
 EXTRACTORS = [*SUB_PIXEL, ThresholdSkeleton()]
 WIDTH, LENGTH = 120, 300
 """Pixels across the stripe and along it."""
@@ -89,7 +88,8 @@ def test_every_scan_line_has_its_centre_once(extractor, axis, kind):
 
 
 @pytest.mark.parametrize(
-    ("extractor", "bar"), [(GrayGravity(), 0.08), (GaussianFit(), 0.05), (Steger(), 0.05)]
+    ("extractor", "bar"),
+    [(GrayGravity(), 0.08), (GaussianFit(), 0.05), (Steger(), 0.05), (Murk(), 0.05)],
 )
 @pytest.mark.parametrize("axis", ["x", "y"])
 def test_a_noisy_stripe_is_found_to_the_projects_bar(extractor, bar, axis):
@@ -174,14 +174,15 @@ def test_frames_are_taken_one_at_a_time_and_left_as_they_were(extractor):
     before, taken = image.copy(), []
 
     def frames():
-        for index in range(3):
+        for index in range(20):
             taken.append(index)
             yield Frame(image, index, float(index))
 
-    stripes = extractor.extract(frames(), _rig("y"), Background(noise=NOISE))
+    background = extractor.learn([Frame(image, 0, 0.0)], _rig("y"))
+    stripes = extractor.extract(frames(), _rig("y"), background)
     assert taken == []
     next(iter(stripes))
-    assert taken == [0]
+    assert taken == list(range(1 + extractor.look_ahead))
     np.testing.assert_array_equal(image, before)
 
 
@@ -189,7 +190,8 @@ def test_frames_are_taken_one_at_a_time_and_left_as_they_were(extractor):
 def test_a_dark_frame_between_others_gives_an_empty_stripe(extractor):
     dark = np.zeros((WIDTH, LENGTH), np.uint8)
     frames = [Frame(image, i, float(i)) for i, image in enumerate([_picture(), dark, _picture()])]
-    stripes = list(extractor.extract(frames, _rig("y"), Background(noise=0.3)))
+    background = extractor.learn(frames, _rig("y"))
+    stripes = list(extractor.extract(frames, _rig("y"), background))
     assert [len(stripe) > 0 for stripe in stripes] == [True, False, True]
 
 

@@ -3,36 +3,13 @@
 import numpy as np
 from numba import njit
 
+from .cholesky import solve
+
 _SIZE = 5
 """Parameters: height, centre, width, background, its slope."""
 _ITERATIONS = 25
 _NARROWEST, _WIDEST = 0.4, 3.0
 """Widths that are stripes: from less than a pixel to this many times the window."""
-
-
-@njit(cache=True, nogil=True)
-def _solve(matrix: np.ndarray, right: np.ndarray) -> bool:
-    """Solve symmetric equations in place by Cholesky's method; False where they are singular."""
-    n = len(right)
-    for j in range(n):
-        for k in range(j):
-            matrix[j, j] -= matrix[j, k] ** 2
-        if matrix[j, j] <= 1e-12:
-            return False
-        matrix[j, j] = np.sqrt(matrix[j, j])
-        for i in range(j + 1, n):
-            for k in range(j):
-                matrix[i, j] -= matrix[i, k] * matrix[j, k]
-            matrix[i, j] /= matrix[j, j]
-    for i in range(n):
-        for k in range(i):
-            right[i] -= matrix[i, k] * right[k]
-        right[i] /= matrix[i, i]
-    for i in range(n - 1, -1, -1):
-        for k in range(i + 1, n):
-            right[i] -= matrix[k, i] * right[k]
-        right[i] /= matrix[i, i]
-    return True
 
 
 @njit(cache=True, nogil=True)
@@ -88,7 +65,7 @@ def fit_peaks(
             step[:] = right
             for k in range(_SIZE):
                 work[k, k] *= 1.0 + damping
-            if not _solve(work, step):
+            if not solve(work, step):
                 break
             trial[:] = p + step
             if trial[2] > _NARROWEST / 2 and abs(trial[1] - peak) <= half_width:
@@ -106,6 +83,6 @@ def fit_peaks(
         step[:] = 0.0
         step[1] = 1.0
         good = _NARROWEST <= p[2] <= _WIDEST * half_width and p[0] > 0 and damping < 1e6
-        if good and _solve(work, step):
+        if good and solve(work, step):
             found[i, 0], found[i, 1], found[i, 2] = p[1], noise * np.sqrt(step[1]), p[0]
     return found

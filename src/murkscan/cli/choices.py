@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from ..mesh import AbstractMesher
     from ..triangulate import AbstractTriangulation
 
-ExtractorName = Literal["threshold-skeleton", "gray-gravity", "gaussian", "steger"]
+ExtractorName = Literal["threshold-skeleton", "gray-gravity", "gaussian", "steger", "murk"]
 MethodName = Literal["ray-sheet", "equation-4"]
 MesherName = Literal["grid", "poisson"]
 
@@ -23,6 +23,7 @@ _EXTRACTORS: dict[ExtractorName, str] = {
     "gray-gravity": "GrayGravity",
     "gaussian": "GaussianFit",
     "steger": "Steger",
+    "murk": "Murk",
 }
 _METHODS: dict[MethodName, str] = {"ray-sheet": "RaySheet", "equation-4": "BaselineAngle"}
 _MESHERS: dict[MesherName, str] = {"grid": "GridMesh", "poisson": "Poisson"}

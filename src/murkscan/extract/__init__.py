@@ -6,6 +6,7 @@ Every extractor is a frozen dataclass: its fields are its settings, `learn` and 
 from .base import AbstractExtractor as AbstractExtractor
 from .gaussian_fit import GaussianFit as GaussianFit
 from .gray_gravity import GrayGravity as GrayGravity
+from .murk import Murk as Murk
 from .noise import learn_noise as learn_noise
 from .overlay import draw_stripe as draw_stripe
 from .steger import Steger as Steger

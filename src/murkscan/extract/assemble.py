@@ -24,6 +24,7 @@ def assemble_stripe(
     centres: Scalars,
     sigma: Scalars,
     signal: Scalars,
+    posterior: Scalars | None = None,
     shadow: float = 0.0,
 ) -> Stripe:
     """Order centres by scan line, number their branches, and give them in full-frame pixels.
@@ -36,6 +37,7 @@ def assemble_stripe(
         centres: Position along the scan line [px of the image]; rows with NaN are left out.
         sigma: Standard deviation of each centre [px of the image].
         signal: Height of the stripe above its surroundings [grey levels].
+        posterior: Probability of each centre; 1 unless given.
         shadow: Distance from a brighter centre up to which a much fainter one is its halo or its
             speckle, and is left out [px of the image].
     """
@@ -55,7 +57,9 @@ def assemble_stripe(
         pixels=pixels,
         sigma=(sigma[order] * stretch).astype(np.float32),
         signal=signal[order].astype(np.float32),
-        posterior=np.ones(n, np.float32),
+        posterior=np.ones(n, np.float32)
+        if posterior is None
+        else posterior[order].astype(np.float32),
         laser=np.full(n, laser, np.uint8),
         branch=branch.astype(np.uint8),
     )

@@ -21,12 +21,13 @@ class AbstractExtractor(abc.ABC):
     look_ahead: ClassVar[int] = 0
     """Frames on both sides of a frame that its stripe depends on, 0 to 8."""
 
-    def learn(self, frames: Sequence[Frame], rig: Rig) -> Background:
+    def learn(self, frames: Sequence[Frame], rig: Rig, *, laser: int = 0) -> Background:
         """Learn what the recording looks like where the stripe is not.
 
         Args:
             frames: Frames spread over the recording, in order, at least one.
             rig: The rig that recorded them.
+            laser: Number of the laser in the rig whose stripe will be looked for.
         """
         return learn_noise(frames)
 

@@ -5,9 +5,10 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
+from jaxtyping import Float
 
-from ..types.arrays import Image
-from ..types.background import Background
+from ..types.arrays import Image, Scalars
+from ..types.background import Background, Noise
 from ..types.frame import Frame
 
 _QUANTISATION = 1 / math.sqrt(12)
@@ -71,3 +72,104 @@ def _spread(values: np.ndarray) -> float:
     # Among equal whole numbers the median is the share of smaller ones that says where it lies.
     below, at = np.mean(size < middle), np.mean(size == middle)
     return _GAUSSIAN * max(middle - 0.5 + float((0.5 - below) / at), 0.0)
+
+
+_KERNEL = np.array([1, -4, 6, -4, 1])
+"""Fourth differences: blind to all that a cubic follows."""
+_CLOSE = 2.5
+"""Standard deviations beyond which a difference counts as one of these."""
+_BIN = (3.0, 0.2)
+"""Least width of a bin of levels [grey levels], and as a share of the level. Rounding would bias
+narrower ones."""
+_FEW = 500
+"""Differences that a bin has at least: their variance is then known to 6 %."""
+
+Bins = Float[np.ndarray, "bins 3"]
+"""Mean level, variance of a pixel, number of differences."""
+
+
+def learn_levels(images: Sequence[Image]) -> Noise:
+    """Estimate how a pixel's noise grows with its level, from differences within pictures.
+
+    Args:
+        images: Pictures with the stripe along their rows, at least one.
+
+    References:
+        Foi, Trimeche, Katkovnik and Egiazarian, Practical Poissonian-Gaussian noise modeling and
+        fitting for single-image raw-data, IEEE TIP 17(10), 2008, for the law; the differences and
+        the one-sided fit are ours.
+    """
+    white = _learn_white(images)
+    level, bend = (np.concatenate(parts) for parts in zip(*map(_bends, images), strict=True))
+    keep = level < 0.85 * white
+    bins = _bin_bends(level[keep], bend[keep])
+    # Where black cuts the noise off, it seems to grow with the level.
+    whole = bins[bins[:, 0] > _CLOSE * np.sqrt(bins[:, 1])]
+    if len(whole) == 0:
+        return Noise(_average(bins), 0.0, white)
+    fixed, gain = _fit_law(whole)
+    return Noise(fixed, gain, white)
+
+
+def _learn_white(images: Sequence[Image]) -> float:
+    """Give the level that clipped pixels pile up at; the largest that there is where none do."""
+    levels = np.concatenate([image.ravel() for image in images])
+    top = int(levels.max())
+    at_top, below = np.sum(levels == top), np.sum((levels < top) & (levels >= top - 5)) / 5
+    piled = at_top > max(50, 5 * below)
+    return float(top if piled and top > 0 else np.iinfo(levels.dtype).max)
+
+
+def _bends(image: Image) -> tuple[Scalars, Scalars]:
+    """Give the mean level and the fourth difference at every second pixel."""
+    windows = np.lib.stride_tricks.sliding_window_view(image, len(_KERNEL), axis=1)[:, ::2]
+    return windows.mean(axis=2).ravel(), (windows @ _KERNEL.astype(np.int32)).ravel().astype(float)
+
+
+def _bin_bends(level: Scalars, bend: Scalars) -> Bins:
+    """Give mean level, variance of a pixel and number of differences of each full bin."""
+    order = np.argsort(level)
+    level, bend = level[order], bend[order]
+    rows: list[tuple[float, float, float]] = []
+    first = 0
+    while first < len(level):
+        end = level[first] + max(_BIN[0], _BIN[1] * level[first])
+        last = max(int(np.searchsorted(level, end)), first + _FEW)
+        if last <= len(level):
+            variance = _winsorised(bend[first:last]) / float(np.sum(_KERNEL**2))
+            rows.append((float(level[first:last].mean()), variance, float(last - first)))
+        first = last
+    return np.array(rows, float).reshape(-1, 3)
+
+
+def _winsorised(values: Scalars) -> float:
+    """Give the variance around 0 with far values pulled in; whole numbers do not bias it."""
+    squares = values**2
+    variance = float(np.mean(squares))
+    for _ in range(12):
+        # 0.9776 is what is left of a Gaussian's variance with all beyond 2.5 of it pulled in.
+        variance = float(np.mean(np.minimum(squares, _CLOSE**2 * variance))) / 0.9776
+    return variance
+
+
+def _average(bins: Bins) -> float:
+    """Give the variance over all levels; 0 where nothing is known."""
+    return float(np.average(bins[:, 1], weights=bins[:, 2])) if len(bins) else 0.0
+
+
+def _fit_law(bins: Bins) -> tuple[float, float]:
+    """Fit variance = fixed + gain · level under most bins: structure only adds to it."""
+    levels, variances, counts = bins.T
+    if len(levels) < 3 or levels.max() <= 1.5 * levels.min() + 2.0:
+        return _average(bins), 0.0
+    columns = np.stack([np.ones_like(levels), levels], axis=1)
+    trust = np.sqrt(counts) / np.maximum(variances, 0.05)
+    weights = trust
+    law = np.zeros(2)
+    for _ in range(20):
+        law = np.linalg.lstsq(columns * weights[:, None], variances * weights, rcond=None)[0]
+        above = (variances - columns @ law) / np.maximum(columns @ law, 0.05)
+        weights = trust / np.sqrt(1 + (np.maximum(above, 0.0) / 0.05) ** 2)
+    if law[1] <= 0:
+        return _average(bins), 0.0
+    return float(law[0]), float(law[1])

@@ -79,7 +79,7 @@ def extract_recording(
     since = time.monotonic()
     stage.begin()
     progress("extract", 0, recording.num_frames)
-    background = extractor.learn(recording.sample(_SAMPLES), rig)
+    background = extractor.learn(recording.sample(_SAMPLES), rig, laser=laser)
     project.save_background(describe(background))
     job = _Job(project, rig, extractor, background, laser, overlay_step(recording))
     for part in _run(job, recording):

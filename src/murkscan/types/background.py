@@ -1,6 +1,44 @@
-"""What a recording looks like where the stripe is not."""
+"""What a recording looks like where the stripe is not, and how the stripe stands out of it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+
+@dataclass(frozen=True)
+class Noise:
+    """How much a pixel's grey level fluctuates at each level."""
+
+    fixed: float
+    """Variance at level 0 [grey levels²]: reading and rounding."""
+    gain: float
+    """Variance added by each grey level [grey levels]: the light's own."""
+    white: float
+    """Level from which a pixel is saturated [grey levels]."""
+
+    least: float = 1 / 12 + 0.02
+    """Variance that no pixel is below [grey levels²]: that of rounding, and of what is rounded."""
+
+    def averaged(self, pixels: int) -> "Noise":
+        """Give the noise of the mean of so many pixels."""
+        return replace(self, fixed=self.fixed / pixels, gain=self.gain / pixels)
+
+
+@dataclass(frozen=True)
+class StripeShape:
+    """What a recording's stripe looks like across its scan lines: a core on a skirt.
+
+    Both are Gaussians; the skirt is light that the water has scattered forward.
+    """
+
+    width: float
+    """1σ of the core [px of the binned picture]."""
+    skirt: float
+    """Height of the skirt as a share of the core's."""
+    binning: int
+    """Pixels along a scan line that are averaged first, where a stripe is wide."""
+    misfit: float
+    """Factor by which true centres scatter more than the noise explains, at least 1."""
+    floor: float
+    """What they scatter beside that: speckle and texture [px of the binned picture]."""
 
 
 @dataclass(frozen=True)
@@ -9,3 +47,7 @@ class Background:
 
     noise: float
     """Standard deviation of one pixel's grey level from frame to frame [grey levels]."""
+    levels: Noise | None = None
+    """The same for each grey level; of extractors that weigh by it."""
+    stripe: StripeShape | None = None
+    """The stripe's look; of extractors that expect one."""

@@ -1,0 +1,60 @@
+"""How much each pixel looks like the middle of a stripe, in standard deviations of the noise."""
+
+import numpy as np
+from numba import njit
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def score_pixels(
+    levels: np.ndarray, template: np.ndarray, fixed: float, gain: float, least: float
+) -> np.ndarray:
+    """Correlate each column with a template, and divide by the noise of its surroundings.
+
+    The noise has the variance max(fixed + gain · level, least), at the mean level of the two outer
+    pixels on both sides of the template's window. Beyond its ends a column goes on as it ends.
+    """
+    length, num_lines = levels.shape
+    size = len(template)
+    half = size // 2
+    scores = np.empty((length, num_lines), np.float32)
+    total = np.empty(num_lines, np.float32)
+    rim = np.empty(num_lines, np.float32)
+    for v in range(length):
+        total[:] = 0.0
+        rim[:] = 0.0
+        for k in range(size):
+            row = levels[min(max(v + k - half, 0), length - 1)]
+            weight = template[k]
+            for u in range(num_lines):
+                total[u] += weight * row[u]
+            if k < 2 or k >= size - 2:
+                for u in range(num_lines):
+                    rim[u] += np.float32(0.25) * row[u]
+        for u in range(num_lines):
+            variance = max(np.float32(fixed) + np.float32(gain) * rim[u], np.float32(least))
+            scores[v, u] = total[u] / np.sqrt(variance)
+    return scores
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def add_neighbour(
+    scores: np.ndarray, other: np.ndarray, down: int, across: int, bound: float, correlation: float,
+    total: np.ndarray,
+) -> None:  # fmt: skip
+    """Add the scores of another frame, by at most `bound` more than a frame's own.
+
+    Where the other frame is a field of the other rows, its pixels lie half a pixel off: then the
+    scores there and (down, across) further back are added up and scaled by `correlation`.
+    """
+    length, num_lines = scores.shape
+    for v in range(length):
+        near = other[v]
+        far = other[min(max(v - down, 0), length - 1)]
+        if down == 0 and across == 0:
+            for u in range(num_lines):
+                total[v, u] += min(near[u], scores[v, u] + np.float32(bound))
+        else:
+            for u in range(num_lines):
+                beside = far[min(max(u - across, 0), num_lines - 1)]
+                mean = np.float32(correlation) * (near[u] + beside)
+                total[v, u] += min(mean, scores[v, u] + np.float32(bound))

@@ -1,0 +1,134 @@
+"""A stripe with a core and a skirt on a curved background, fitted by maximum likelihood."""
+
+import numpy as np
+from numba import njit
+
+from .cholesky import first_variance, solve
+
+_SIZE = 7
+"""Parameters: centre, height, log of the core's width, skirt's share, background, its slope, its
+curvature."""
+_MOST_STEPS = 8
+_FEWEST = 6
+"""Pixels that are not white, below which nothing is fitted."""
+
+
+@njit(cache=True, nogil=True)
+def fit_stripes(
+    levels: np.ndarray, lines: np.ndarray, starts: np.ndarray, half: int,
+    noise: np.ndarray, shape: np.ndarray,
+) -> np.ndarray:  # fmt: skip
+    """Fit a stripe to each start, by Gauss and Newton's method with weights 1 / variance.
+
+    `noise` holds the variance's fixed part, its part per level, its least, and the level of white;
+    `shape` the core's width [px] and its prior's spread (of the logarithm), the skirt's width as a
+    multiple of it, the skirt's share of the height and its prior's spread.
+    Gives centre, its standard deviation, height, core's width, skirt's share, and the mean square
+    of the weighted residuals (n 6); NaN where none fits.
+    """
+    found = np.full((len(lines), 6), np.nan)
+    p, step = np.empty(_SIZE), np.empty(_SIZE)
+    matrix = np.empty((_SIZE, _SIZE))
+    for i in range(len(lines)):
+        middle = int(np.rint(starts[i]))
+        low, high = max(middle - half, 0), min(middle + half, len(levels) - 1)
+        scan = levels[low : high + 1, lines[i]]
+        _begin(scan, middle - low, starts[i] - middle, shape, p)
+        misfit, variance = 0.0, -1.0
+        for turn in range(_MOST_STEPS):
+            misfit = _normal_equations(scan, middle - low, p, noise, shape, matrix, step)
+            if misfit < 0.0 or not solve(matrix, step):
+                variance = -1.0
+                break
+            variance = first_variance(matrix)
+            _take_step(p, step)
+            if abs(step[0]) < 1e-3 and turn > 1:
+                break
+        if variance > 0.0 and abs(p[0]) < 2.0 + shape[0]:
+            found[i, 0], found[i, 1], found[i, 2] = middle + p[0], np.sqrt(variance), p[1]
+            found[i, 3], found[i, 4], found[i, 5] = np.exp(p[2]), p[3], misfit
+    return found
+
+
+@njit(cache=True, nogil=True)
+def _begin(scan: np.ndarray, middle: int, off: float, shape: np.ndarray, p: np.ndarray) -> None:
+    """Start with the background's straight line between the window's ends."""
+    n = len(scan)
+    left = 0.5 * (float(scan[0]) + float(scan[1]))
+    right = 0.5 * (float(scan[n - 1]) + float(scan[n - 2]))
+    slope = (right - left) / (n - 2)
+    top = 0.0
+    for v in range(max(middle - 1, 0), min(middle + 2, n)):
+        top = max(top, float(scan[v]))
+    base = left + slope * (middle - 0.5)
+    p[0], p[1], p[2], p[3] = off, max(top - base, 1.0), np.log(shape[0]), shape[3]
+    p[4], p[5], p[6] = base, slope, 0.0
+
+
+@njit(cache=True, nogil=True)
+def _take_step(p: np.ndarray, step: np.ndarray) -> None:
+    """Add the step, no longer than a fit can be trusted over."""
+    step[0] = min(max(step[0], -0.5), 0.5)
+    step[2] = min(max(step[2], -0.3), 0.3)
+    for k in range(len(p)):
+        p[k] += step[k]
+    p[1] = max(p[1], 0.05)
+
+
+@njit(cache=True, nogil=True)
+def _normal_equations(
+    scan: np.ndarray, middle: int, p: np.ndarray, noise: np.ndarray, shape: np.ndarray,
+    matrix: np.ndarray, right: np.ndarray,
+) -> float:  # fmt: skip
+    """Fill the normal equations at p, with the priors; white pixels are left out.
+
+    Gives the mean square of the weighted residuals, negative where too few pixels are left.
+    """
+    matrix[:] = 0.0
+    right[:] = 0.0
+    slopes = np.empty(_SIZE)
+    width = np.exp(p[2])
+    skirt = width * shape[2]
+    total, count = 0.0, 0
+    for v in range(len(scan)):
+        level = float(scan[v])
+        if level >= noise[3]:
+            continue
+        along = float(v - middle)
+        x = along - p[0]
+        core, broad = np.exp(-0.5 * (x / width) ** 2), np.exp(-0.5 * (x / skirt) ** 2)
+        inner, outer = core / (width * width), p[3] * broad / (skirt * skirt)
+        slopes[0] = p[1] * x * (inner + outer)
+        slopes[1] = core + p[3] * broad
+        slopes[2] = p[1] * x * x * (inner + outer)
+        slopes[3] = p[1] * broad
+        slopes[4], slopes[5], slopes[6] = 1.0, along, along * along
+        model = p[1] * slopes[1] + p[4] + p[5] * along + p[6] * slopes[6]
+        weight = 1.0 / max(noise[0] + noise[1] * min(max(model, 0.0), noise[3]), noise[2])
+        off = level - model
+        total += off * off * weight
+        count += 1
+        for a in range(_SIZE):
+            right[a] += weight * slopes[a] * off
+            for b in range(a + 1):
+                matrix[a, b] += weight * slopes[a] * slopes[b]
+    _add_priors(p, shape, matrix, right)
+    return total / max(count - _FEWEST, 1) if count >= _FEWEST else -1.0
+
+
+@njit(cache=True, nogil=True)
+def _add_priors(p: np.ndarray, shape: np.ndarray, matrix: np.ndarray, right: np.ndarray) -> None:
+    """Hold width and skirt near what was learnt, and let the background bend no more than a foot.
+
+    The background's curvature over a core's width stays near a hundredth of the stripe's height.
+    """
+    curvature = 0.0025 * abs(p[1]) / shape[0] ** 2 + 1e-3
+    for k, off, spread in (
+        (2, np.log(shape[0]) - p[2], shape[1]),
+        (3, shape[3] - p[3], shape[4]),
+        (6, -p[6], curvature),
+    ):
+        matrix[k, k] += 1.0 / spread**2
+        right[k] += off / spread**2
+    for k in range(len(p)):
+        matrix[k, k] *= 1.0 + 1e-9

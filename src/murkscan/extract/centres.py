@@ -1,0 +1,154 @@
+"""The exact centre of a stripe where its ridge is, and how sure it is."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+from scipy.special import erf
+
+from .._kernels.join_centres import join_centres
+from .._kernels.stripe_fit import fit_stripes
+from ..types.arrays import Indices, Mask, Scalars
+from ..types.background import Noise, StripeShape
+from .ridges import Ridges
+from .scan_lines import ScanLines
+
+SKIRT = 2.5
+"""Width of the skirt near the core, as a multiple of the core's."""
+_WIDTH_SPREAD, _SKIRT_SPREAD = 0.15, 0.1
+"""Spreads of the priors on a stripe's width (of its logarithm) and on its skirt's share."""
+_REACH, _WEAK = 8.0, 2.0
+"""Scan lines over which weak centres are joined; roughnesses of the surface from which one is."""
+_ROUGH = (0.04, 1.0)
+"""Least and largest roughness of a surface from scan line to scan line [px]; within them it is four
+times what sure centres scatter."""
+_RIGHT = 1.5
+"""Pixels within which a centre is the surface's, and not something beside it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Centres:
+    """Centres of one frame, by scan line."""
+
+    lines: ScanLines
+    scan_line: Indices
+    position: Scalars
+    """Along the scan line [full-frame px]."""
+    sigma: Scalars
+    """Standard deviation [full-frame px]."""
+    signal: Scalars
+    """Height of the stripe above its surroundings [grey levels]."""
+    posterior: Scalars
+
+    def __len__(self) -> int:
+        """Count the centres."""
+        return len(self.scan_line)
+
+    def __getitem__(self, which: Mask) -> "Centres":
+        """Pick some of them."""
+        columns = (self.scan_line, self.position, self.sigma, self.signal, self.posterior)
+        return Centres(self.lines, *(column[which] for column in columns))
+
+    @property
+    def index(self) -> int:
+        """Number of the frame in its recording."""
+        return self.lines.index
+
+
+@dataclass(frozen=True)
+class Tightness:
+    """How firmly a fit is held to the shape that was learnt."""
+
+    width: float = _WIDTH_SPREAD
+    """Spread of the logarithm of the core's width."""
+    skirt: float = _SKIRT_SPREAD
+    """Spread of the skirt's share."""
+
+
+def fit_ridges(
+    lines: ScanLines,
+    scan_lines: Indices,
+    positions: Scalars,
+    *,
+    noise: Noise,
+    shape: StripeShape,
+    tightness: Tightness = Tightness(),
+) -> Float[np.ndarray, "n 6"]:
+    """Fit core, skirt and a curved background around each ridge, weighted by the noise.
+
+    Args:
+        lines: The frame.
+        scan_lines: Scan line of each ridge.
+        positions: Its position [px of `lines`].
+        noise: Of a pixel of `lines`.
+        shape: The stripe's usual shape.
+        tightness: How firmly the fit is held to it.
+
+    Returns:
+        Position and its standard deviation [px of `lines`], the core's height [grey levels] and
+        width [px of `lines`], the skirt's share, and the mean square of the weighted residuals;
+        NaN where nothing fits.
+    """
+    half = max(6, math.ceil(5 * shape.width) + 3)
+    law = np.array([noise.fixed, noise.gain, noise.least, noise.white])
+    look = np.array([shape.width, tightness.width, SKIRT, shape.skirt, tightness.skirt])
+    return fit_stripes(lines.levels, scan_lines, positions, half, law, look)
+
+
+def find_centres(
+    ridges: Ridges, posterior: Float[np.ndarray, "lines most"], *, noise: Noise, shape: StripeShape
+) -> Centres:
+    """Fit the ridges that are more probably the stripe than not."""
+    line, which = np.nonzero(posterior > 0.5)
+    start = ridges.positions[line, which]
+    found = fit_ridges(ridges.lines, line, start, noise=noise, shape=shape)
+    lines, (position, sigma, height, _, skirt, _) = ridges.lines, found.T
+    fits = np.isfinite(position)
+    spread = lines.stretch * np.hypot(shape.misfit * sigma, shape.floor)
+    centres = Centres(
+        lines,
+        line,
+        lines.as_full_frame(position),
+        spread,
+        height * (1 + skirt),
+        posterior[line, which],
+    )
+    return centres[fits]
+
+
+def join_weak(near: Mapping[int, Centres], *, shape: StripeShape) -> Centres:
+    """Join a frame's weak centres with those around them, in scan lines and in frames.
+
+    Where the noise of one centre exceeds the roughness of a surface, its neighbours know more of
+    where it is: a parabola over scan lines that moves evenly over frames is put through them.
+
+    Args:
+        near: Centres of the frame, 0, and of those around it.
+        shape: The stripe's shape, which tells how rough surfaces are.
+    """
+    own = near[0]
+    groups = [near[distance] for distance in sorted(near)]
+    starts = np.cumsum([0] + [len(group) for group in groups])
+    first = starts[sorted(near).index(0)]
+    rough = own.lines.stretch * float(np.clip(4 * shape.floor, *_ROUGH))
+    joined = join_centres(
+        np.concatenate([group.scan_line + own.lines.offset(group.lines)[1] for group in groups]),
+        np.concatenate([np.full(len(near[d]), float(d)) for d in sorted(near)]),
+        np.concatenate([group.position for group in groups]),
+        np.concatenate([group.sigma for group in groups]),
+        starts,
+        first,
+        first + len(own),
+        _REACH,
+        rough,
+        _WEAK * rough,
+    )
+    return replace(own, position=joined[:, 0], sigma=joined[:, 1])
+
+
+def doubt_wide(centres: Centres) -> Centres:
+    """Lower the posterior by the chance that the centre is not within what counts as right."""
+    right = erf(_RIGHT / np.maximum(centres.sigma, 1e-6) / math.sqrt(2))
+    return replace(centres, posterior=centres.posterior * right)

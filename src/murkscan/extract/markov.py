@@ -1,0 +1,125 @@
+"""Which ridges are the stripe: a hidden Markov chain over scan lines, with what frames say."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from jaxtyping import Float
+
+from .._kernels.chain import follow_chain
+from ..errors import InputError
+from .ridges import Ridges
+
+_STEPS = np.array([0.25, 1.2, 0.80, 0.19, 0.35])
+"""Scales of a surface's small and larger steps [px a line], their shares, and the scale of steps in
+the logarithm of its brightness. What is left of the shares are jumps."""
+_MISS = 0.04
+"""Probability that a line of a stripe lacks its ridge."""
+_FRAMES = (-4, -2, 2, 4)
+"""Frames that are asked, too: snow is gone by then, and their rows are a field's own."""
+_SEEN, _SEEN_FAINT, _UNSEEN = 1.8, 1.0, -2.5
+"""Logarithms of the likelihood ratios of a ridge that such a frame has, too, or has not."""
+_FAINT, _FULL = 4.5, (2.5, 5.5)
+"""Score below which noise hides a ridge, and scores over which its absence comes to count."""
+_PERSISTENT = (0.3, 0.6)
+"""Share of sure ridges that the next frame has, too, over which frames come to count at all."""
+_LONG, _STEADY = 24, 3.0
+"""Lines, and the step that parts them [px], from which a stripe needs no other frame."""
+_END = -8.0
+"""Logarithm of the likelihood ratio of a stripe's blur beyond its end."""
+_CLEAR, _SHORT = 5.0, 8
+"""Score of ridges, and lines that have one, from which a second branch is looked for."""
+
+Posterior = Float[np.ndarray, "lines most"]
+Evidence = Float[np.ndarray, "lines most"]
+
+
+@dataclass(frozen=True)
+class Markov:
+    """The chain's settings."""
+
+    clutter: float
+    """Ridges of snow and glow in a pixel and an e-fold of height."""
+    birth: float
+    """Probability that a stripe begins at a scan line."""
+    death: float
+    """Probability that it ends there."""
+
+    def __post_init__(self) -> None:
+        """Refuse what are no probabilities."""
+        if not (self.clutter > 0 and 0 < self.birth < 1 and 0 < self.death < 1):
+            raise InputError(
+                "Clutter must be above 0, birth and death must lie between 0 and 1, got "
+                f"{self.clutter:g}, {self.birth:g} and {self.death:g}."
+            )
+
+    def follow(self, ridges: Ridges, said: Evidence | None = None) -> Posterior:
+        """Give the posterior of each ridge being the stripe, 0 where there is no ridge.
+
+        Args:
+            ridges: Of one frame.
+            said: Logarithm of the likelihood ratio that others give each ridge; none unless given.
+        """
+        height = ridges.heights
+        # Local maxima of white noise through the filter, by their height (Rice 1945).
+        noise = 0.55 * height**2 * np.exp(-0.5 * height**2)
+        other = 0.0 if said is None else np.minimum(said, 20.0)
+        ratio = np.where(ridges.exist, np.exp(other) / (noise + 0.25 * self.clutter), 0.0)
+        first = self._chain(ridges, ratio)
+        free = ridges.exist & ~ridges.are_within(first > 0.5, float(ridges.reach))
+        if (free & (ridges.heights > _CLEAR)).any(axis=1).sum() < _SHORT:
+            return first
+        return np.where(free, self._chain(ridges, np.where(free, ratio, 0.0)), first)
+
+    def _chain(self, ridges: Ridges, ratio: Evidence) -> Posterior:
+        length = len(ridges.lines.levels)
+        own = ridges.positions, ridges.heights, ridges.counts
+        return follow_chain(*own, ratio, length, self.birth, self.death, _MISS, _STEPS)
+
+
+def ask_frames(near: Mapping[int, Ridges], markov: Markov) -> Evidence:
+    """Tell what the frames around say of each ridge: a surface stays, snow does not.
+
+    Frames count as far as the recording's surely are of one surface: photographs of a board that
+    was moved say nothing about one another.
+
+    Returns:
+        Logarithm of the likelihood ratio of each ridge of frame 0.
+    """
+    own = near[0]
+    said = np.zeros_like(own.heights)
+    sure = np.clip((own.heights - _FULL[0]) / (_FULL[1] - _FULL[0]), 0.0, 1.0)
+    for distance in (distance for distance in _FRAMES if distance in near):
+        is_there = own.are_also_in(near[distance], near=1.0 + 0.25 * abs(distance))
+        seen = np.where(own.heights > _FAINT, _SEEN, _SEEN_FAINT)
+        said += np.where(is_there, seen, _UNSEEN * sure)
+    said *= _persistence(near)
+    _spare_long(own, said, markov)
+    return said + np.where(own.are_blurred_ends(), _END, 0.0)
+
+
+def _persistence(near: Mapping[int, Ridges]) -> float:
+    """Give from 0 to 1 how far frames that follow one another show the same surface."""
+    shares = [near[k].agreement(near[k + 1]) for k in near if k + 1 in near]
+    known = [share for share in shares if not np.isnan(share)]
+    if not known:
+        return 1.0
+    low, high = _PERSISTENT
+    return float(np.clip((np.median(known) - low) / (high - low), 0.0, 1.0))
+
+
+def _spare_long(ridges: Ridges, said: Evidence, markov: Markov) -> None:
+    """Let a surface that is new as a whole be: a long stripe needs no other frame."""
+    against = (said < -3.0) & (ridges.heights > 6.0) & ridges.exist
+    if against.any(axis=1).sum() <= _LONG:
+        return
+    posterior = markov.follow(ridges)
+    best, every = np.argmax(posterior, axis=1), np.arange(len(said))
+    on = (posterior[every, best] > 0.5) & (ridges.heights[every, best] > 5.0)
+    step = np.abs(np.diff(ridges.positions[every, best])) > _STEADY
+    ends = np.flatnonzero(np.r_[True, ~on[1:] | ~on[:-1] | step, True])
+    for first, last in pairwise(ends):
+        if last - first >= _LONG and on[first]:
+            run = every[first:last]
+            said[run, best[run]] = np.maximum(said[run, best[run]], 0.0)

@@ -1,0 +1,230 @@
+"""What a recording's stripe looks like across its scan lines, learnt from the recording itself."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+from jaxtyping import Float, Shaped
+
+from ..types.arrays import Indices, Scalars
+from ..types.background import Noise, StripeShape
+from ..types.frame import Frame
+from ..types.laser import Axis
+from .centres import Tightness, fit_ridges
+from .markov import Markov
+from .matched_filter import MatchedFilter
+from .ridges import Ridges, find_frame_ridges
+from .scan_lines import ScanLines
+
+_BINNINGS = (1, 2, 4, 8, 16, 32)
+"""Pixels averaged, to find a stripe of whatever width with one filter."""
+_FIRST_WIDTH = 0.6
+"""1σ of that filter [px after averaging]."""
+_FOUND = 0.2
+"""Share of the most stripe found under any of them, from which the narrowest is taken: a wide
+filter is fed by the skirt as well."""
+_WINDOW = 10
+"""Pixels on both sides of a stripe within which it sinks to half its height."""
+_WIDEST, _WANTED = 2.2, 1.1
+"""Width above which more pixels are averaged, and the one that is wanted then [px]."""
+_SURE = 0.9
+"""Posterior from which a ridge is learnt from."""
+_APART = 3
+"""Scan lines between centres whose second difference is taken: nearer ones share their noise."""
+_ONE_SIGMA = 0.6827
+"""Share of a Gaussian's values within one standard deviation."""
+_ENOUGH = 100
+"""Centres from which the shape is learnt, and from which three times as many its scatter."""
+
+
+def learn_stripe_shape(
+    frames: Sequence[Frame], axis: Axis, noise: Noise, *, markov: Markov, min_score: float
+) -> StripeShape:
+    """Learn the core's width, the skirt, and how much more than noise the centres scatter.
+
+    Args:
+        frames: Frames spread over the recording.
+        axis: The camera's axis along which the laser sits.
+        noise: Of a pixel.
+        markov: The chain that tells the stripe from the rest.
+        min_score: Score from which a ridge is looked at.
+
+    Returns:
+        The shape; that of a stripe a pixel wide where the frames show none.
+    """
+    learner = _Learner(axis, noise, markov, min_score)
+    width = learner.measure_width(frames)
+    shape = learner.learn(frames, _begin(width))
+    # In faint stripes noise widens what is half as high: the fit knows better.
+    fitted = shape.binning * shape.width
+    return shape if _binning(fitted) == shape.binning else learner.learn(frames, _begin(fitted))
+
+
+def _begin(width: float) -> StripeShape:
+    """Give a first shape for a stripe of a width [px]."""
+    return StripeShape(width / _binning(width), 0.1, _binning(width), 1.0, 0.0)
+
+
+def _binning(width: float) -> int:
+    """Give how many pixels to average where a stripe has a width [px]."""
+    return 1 if width <= _WIDEST else round(width / _WANTED)
+
+
+@dataclass(frozen=True)
+class _Learner:
+    """How the stripe is looked for in single frames."""
+
+    axis: Axis
+    noise: Noise
+    markov: Markov
+    min_score: float
+
+    def measure_width(self, frames: Sequence[Frame]) -> float:
+        """Measure the width at half height, under the least averaging that shows much stripe [px].
+
+        Gives 1σ of a Gaussian that is as wide.
+        """
+        few = frames[:: max(len(frames) // 6, 1)]
+        counts, widths = [], []
+        for binning in _BINNINGS:
+            matched = MatchedFilter.of(_FIRST_WIDTH, self.noise.averaged(binning))
+            count, measured = 0, [np.zeros(0)]
+            for frame in few:
+                ridges = self._ridges(frame, binning, matched)
+                lines, which = self._sure(ridges, 6.0)
+                middle = np.rint(ridges.positions[lines, which]).astype(int)
+                measured.append(binning * _half_widths(ridges.lines.levels, lines, middle))
+                count += len(np.unique(lines))
+            counts.append(count)
+            widths.append(np.concatenate(measured))
+        known = widths[int(np.argmax(np.array(counts) >= _FOUND * max(counts)))]
+        return float(np.nanmedian(known)) if np.isfinite(known).any() else _FIRST_WIDTH
+
+    def learn(self, frames: Sequence[Frame], shape: StripeShape) -> StripeShape:
+        """Learn the shape, from a first one."""
+        fits = self._fit_all(frames, shape, Tightness(0.5, 0.3))
+        if len(fits) > _ENOUGH:
+            width = _weighted_median(fits.width, fits.trust)
+            skirt = _weighted_median(fits.skirt, fits.trust)
+            shape = replace(shape, width=width, skirt=float(np.clip(skirt, 0.0, 0.5)))
+        misfit, floor = _explain(self._fit_all(frames, shape, Tightness()).bends)
+        return replace(shape, misfit=misfit, floor=floor)
+
+    def _fit_all(
+        self, frames: Sequence[Frame], shape: StripeShape, tightness: Tightness
+    ) -> "_Fits":
+        """Fit the sure ridges of all frames."""
+        noise = self.noise.averaged(shape.binning)
+        matched = MatchedFilter.of(shape.width, noise)
+        parts = []
+        for frame in frames:
+            ridges = self._ridges(frame, shape.binning, matched)
+            lines, which = self._sure(ridges, 0.0)
+            height = ridges.heights[lines, which]
+            found = fit_ridges(
+                ridges.lines, lines, ridges.positions[lines, which],
+                noise=noise, shape=shape, tightness=tightness,
+            )  # fmt: skip
+            parts.append(_Fits.of(lines, found, height))
+        return _Fits.concatenate(parts)
+
+    def _look(self, frame: Frame, binning: int) -> ScanLines:
+        return ScanLines.of(frame, self.axis, binning=binning, white=self.noise.white)
+
+    def _ridges(self, frame: Frame, binning: int, matched: MatchedFilter) -> Ridges:
+        scored = matched.score(self._look(frame, binning))
+        return find_frame_ridges({0: scored}, least=self.min_score, reach=matched.reach)
+
+    def _sure(self, ridges: Ridges, least: float) -> tuple[Indices, Indices]:
+        """Give the scan lines and the numbers of ridges that are surely the stripe."""
+        posterior = self.markov.follow(ridges)
+        lines, which = np.nonzero((posterior > _SURE) & (ridges.heights > least))
+        return lines, which
+
+
+@dataclass(frozen=True, eq=False)
+class _Fits:
+    """What was fitted to sure ridges."""
+
+    width: Scalars
+    skirt: Scalars
+    trust: Scalars
+    bends: Float[np.ndarray, "m 2"]
+    """Second differences of centres: the standard deviation of each that noise explains, and it."""
+
+    def __len__(self) -> int:
+        """Count the ridges."""
+        return len(self.width)
+
+    @classmethod
+    def of(cls, lines: Indices, found: Float[np.ndarray, "n 6"], height: Scalars) -> "_Fits":
+        """Take what fits; a score above 50 is trusted no more than 50."""
+        fits = np.isfinite(found[:, 0])
+        clear = fits & (height > 6.0)
+        bends = _second_differences(lines[clear], found[clear, 0], found[clear, 1])
+        trust = np.minimum(height[fits], 50.0) ** 2
+        return cls(found[fits, 3], found[fits, 4], trust, bends)
+
+    @classmethod
+    def concatenate(cls, parts: Sequence["_Fits"]) -> "_Fits":
+        """Put those of several frames together."""
+        return cls(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(cls)))
+
+
+def _half_widths(levels: Shaped[np.ndarray, "h w"], lines: Indices, middle: Indices) -> Scalars:
+    """Give 1σ of Gaussians as wide at half height as stripes are; NaN where they end too late."""
+    at = middle[:, None] + np.arange(-_WINDOW, _WINDOW + 1)
+    scan = levels[np.clip(at, 0, len(levels) - 1), lines[:, None]].astype(float)
+    scan -= 0.25 * scan[:, [0, 1, -2, -1]].sum(axis=1, keepdims=True)
+    scan /= np.maximum(scan[:, _WINDOW - 1 : _WINDOW + 2].max(axis=1, keepdims=True), 1e-9)
+    sides = _half_crossing(scan[:, _WINDOW:]) + _half_crossing(scan[:, _WINDOW::-1])
+    return sides / math.sqrt(8 * math.log(2))
+
+
+def _half_crossing(side: Float[np.ndarray, "n reach"]) -> Scalars:
+    """Give the distance at which each row first sinks below a half; NaN where it does not."""
+    below = side < 0.5
+    first = np.maximum(np.argmax(below, axis=1), 1)
+    every = np.arange(len(side))
+    above, under = side[every, first - 1], side[every, first]
+    crossing = first - 1 + (above - 0.5) / np.maximum(above - under, 1e-9)
+    return np.where(below.any(axis=1), crossing, np.nan)
+
+
+def _second_differences(
+    lines: Indices, centres: Scalars, sigma: Scalars
+) -> Float[np.ndarray, "m 2"]:
+    """Give how far centres should be off the mean of two others, and are, both scaled to one."""
+    before, after = np.searchsorted(lines, lines - _APART), np.searchsorted(lines, lines + _APART)
+    after = np.minimum(after, len(lines) - 1)
+    both = (lines[before] == lines - _APART) & (lines[after] == lines + _APART)
+    middle, before, after = np.flatnonzero(both), before[both], after[both]
+    bend = centres[middle] - 0.5 * (centres[before] + centres[after])
+    expected = np.sqrt(sigma[middle] ** 2 + 0.25 * (sigma[before] ** 2 + sigma[after] ** 2))
+    smooth = np.abs(bend) < 3.0
+    return np.stack([expected, bend], axis=1)[smooth] / np.sqrt(1.5)
+
+
+def _explain(bends: Float[np.ndarray, "m 2"]) -> tuple[float, float]:
+    """Give the factor and the floor with which 68 % of the differences are as expected.
+
+    The floor comes from the surest tenth, the factor from all that the floor does not rule.
+    """
+    if len(bends) <= 3 * _ENOUGH:
+        return 1.0, 0.0
+    bends = bends[np.argsort(bends[:, 0])]
+    surest = bends[: max(len(bends) // 10, _ENOUGH)]
+    seen = np.quantile(np.abs(surest[:, 1]), _ONE_SIGMA) ** 2
+    floor = max(seen - 1.1 * np.median(surest[:, 0]) ** 2, 0.0)
+    rest = bends[bends[:, 0] ** 2 > 2.0 * floor]
+    if len(rest) < 3 * _ENOUGH:
+        return 1.1, float(np.sqrt(floor))
+    factor = np.quantile(np.abs(rest[:, 1]) / np.sqrt(rest[:, 0] ** 2 + floor), _ONE_SIGMA)
+    return float(np.clip(factor, 1.0, 1.3)), float(np.sqrt(floor))
+
+
+def _weighted_median(values: Scalars, weights: Scalars) -> float:
+    order = np.argsort(values)
+    total = np.cumsum(weights[order])
+    return float(values[order][np.searchsorted(total, 0.5 * total[-1])])
