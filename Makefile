@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: demo test check bench clean
+.PHONY: demo test check bench viewer clean
 
 demo: $(VENV)/core
 	$(BIN)/murkscan demo
@@ -21,6 +21,10 @@ check: $(VENV)/dev
 
 bench: $(VENV)/dev
 	@set -e; for script in benchmarks/*.py; do echo "== $$script"; $(BIN)/python $$script; done
+
+# The script of the page that `murkscan view` writes; committed, so that users need no node.
+viewer:
+	cd src/murkscan/view/viewer && npm install --no-fund --no-audit && npm run build
 
 clean:
 	rm -rf $(VENV) murkscan-demo
