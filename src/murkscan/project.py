@@ -284,6 +284,10 @@ class Project:
         """Write view/index.html."""
         save_text(self.root / "view/index.html", page)
 
+    def save_pictures_page(self, page: str) -> None:
+        """Write view/pictures.html."""
+        save_text(self.root / "view/pictures.html", page)
+
     def save_report(self, content: dict[str, Any], page: str) -> None:
         """Write report/report.json and report/index.html."""
         save_json(self.root / "report/report.json", content)

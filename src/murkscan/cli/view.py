@@ -1,22 +1,41 @@
-"""murkscan view: draw pictures of the surface."""
+"""murkscan view: pictures of the surface, and the page with the model."""
 
 from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
 
 from .progress import progress_bars
 
 
-def view(out: Path) -> None:
-    """Draw pictures of the surface of a scan, isometric and from six sides.
+def view(
+    out: Path,
+    *,
+    other: Annotated[Path | None, Parameter(name="--with")] = None,
+    points: int = 2_000_000,
+) -> None:
+    """Draw a scan's surface from seven sides, and write a page to turn, cut and measure it.
 
     Parameters
     ----------
     out
         Folder of the scan, with a finished mesh stage.
+    other
+        Folder of another scan in the same world, to change to on the page: before and after.
+    points
+        Points, and vertices of the surface, that the page holds of a scan; of more it shows a fair
+        choice.
     """
     from ..project import Project
     from ..survey.view import draw_views
     from .summary import print_result
 
     with progress_bars() as progress:
-        result = draw_views(Project(out), progress=progress)
-    print_result("view", {"pictures": len(result["pictures"])}, out / "view")
+        result = draw_views(
+            Project(out),
+            other=None if other is None else Project(other),
+            most=points,
+            progress=progress,
+        )
+    counts = {"pictures": len(result["pictures"]), "points": result["points"]}
+    print_result("view", counts, out / "view" / "index.html")

@@ -1,11 +1,17 @@
-"""Pictures of a surface or of a cloud, drawn without a screen and without a graphics card."""
+"""Pictures of a surface or of a cloud, drawn without a screen, and a page to measure on."""
 
 from .base import AbstractColours as AbstractColours
 from .base import Legend as Legend
 from .depth import Depth as Depth
 from .gallery import PICTURES as PICTURES
 from .gallery import draw_pictures as draw_pictures
+from .joined import MOST as MOST
+from .joined import model_of_scan as model_of_scan
+from .model import Layer as Layer
+from .model import Model as Model
+from .model import model_of_points as model_of_points
 from .plain import Plain as Plain
 from .render import render as render
+from .viewer_page import render_viewer as render_viewer
 from .views import View as View
 from .views import standard_views as standard_views

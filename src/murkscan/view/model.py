@@ -1,0 +1,142 @@
+"""What the page shows of one scan: vertices, triangles between them, and what is known of each."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial import KDTree
+
+from ..errors import InputError
+from ..types.arrays import Directions, Faces, Indices, Points, Scalars
+from .surface import vertex_normals
+from .views import View, standard_views
+
+Times = Float[np.ndarray, "profiles"]
+Path = Float[np.ndarray, "positions 3"]
+
+
+@dataclass(frozen=True, eq=False)
+class Layer:
+    """One number a vertex, to colour by and to read off."""
+
+    name: str
+    """What it is, in a word: signal, sigma, deviation."""
+    values: Scalars
+    """In the unit below; NaN where there is none."""
+    unit: str
+    """Unit of the values, as it is written beside them."""
+    colour_map: str = "cividis"
+    """Its name in matplotlib."""
+    is_signed: bool = False
+    """Whether the colours' middle stands for zero."""
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """A scan to be shown, in the world frame. The measured vertices come first, in order of time.
+
+    Vertices after the measured ones belong to the surface only, such as those of a Poisson mesh.
+    """
+
+    name: str
+    """How people tell it from another."""
+    vertices: Points
+    """Positions [m]."""
+    normals: Directions
+    """Unit normals of the vertices; zero where there is none."""
+    faces: Faces
+    """Triangles between the vertices; none where there is no surface."""
+    num_measured: int
+    """Vertices that are measured points, to which a measurement snaps."""
+    layers: tuple[Layer, ...]
+    """What is known of each vertex; of the one named sigma [mm] a measurement gets its doubt."""
+    moments: Indices
+    """Which profile each vertex comes from, an index into the times."""
+    times: Times
+    """Time of each profile [s]; or its number, where the recording has no times."""
+    path: Path
+    """Where the camera was at each profile [m]; empty where that is not known."""
+    views: tuple[View, ...]
+    """The isometric view and the six standard ones."""
+    spacing: float
+    """Usual distance between neighbouring vertices [m]."""
+    note: str = ""
+    """What must be said of it in plain words, such as that points were left out."""
+
+    def with_layer(self, layer: Layer, at: Points | None = None) -> "Model":
+        """Give a model with one more layer, in place of the one of its name.
+
+        Args:
+            layer: Its values, one a vertex; or one a place, if places are given.
+            at: The places that the values belong to [m]: a vertex takes the value of the nearest,
+                none where that is farther than four times the usual distance between neighbours.
+
+        Raises:
+            InputError: There is not one value a vertex, or a place.
+        """
+        count = len(self.vertices) if at is None else len(at)
+        if len(layer.values) != count:
+            raise InputError(
+                f"The layer {layer.name} has {len(layer.values)} values for {count} places; give "
+                "one a place."
+            )
+        if at is not None:
+            layer = replace(layer, values=self._carry(layer.values, at))
+        others = tuple(one for one in self.layers if one.name != layer.name)
+        return replace(self, layers=(*others, layer))
+
+    def _carry(self, values: Scalars, at: Points) -> Scalars:
+        away, nearest = KDTree(at).query(self.vertices, distance_upper_bound=4 * self.spacing)
+        found = np.isfinite(away)
+        return np.where(found, np.append(values, np.nan)[nearest], np.nan)
+
+
+def model_of_points(
+    name: str, points: Points, *, faces: Faces | None = None, layers: Sequence[Layer] = ()
+) -> Model:
+    """Make a model of points or of a mesh of which nothing else is known.
+
+    Args:
+        name: How people tell it from another.
+        points: Vertices in the world frame [m], at least one.
+        faces: Triangles between them; None for points alone.
+        layers: What is known of each vertex.
+    """
+    corners = np.zeros((0, 3), int) if faces is None else faces
+    count = len(points)
+    model = Model(
+        name=name,
+        vertices=points,
+        normals=normals_of(points, corners, np.zeros((count, 3))),
+        faces=corners,
+        num_measured=count,
+        layers=(),
+        moments=np.zeros(count, int),
+        times=np.zeros(1),
+        path=np.zeros((0, 3)),
+        views=standard_views(),
+        spacing=usual_spacing(points),
+    )
+    for layer in layers:
+        model = model.with_layer(layer)
+    return model
+
+
+def normals_of(points: Points, faces: Faces, otherwise: Directions) -> Directions:
+    """Give the normals that the surface has at its vertices, and others at those not on it."""
+    if len(faces) == 0:
+        return otherwise
+    normals = np.array(otherwise, float)
+    on_surface = np.unique(faces)
+    normals[on_surface] = vertex_normals(points, faces)[on_surface]
+    return normals
+
+
+def usual_spacing(points: Points) -> float:
+    """Give the median distance from a point to its fourth neighbour [m], of two thousand points."""
+    if len(points) < 5:
+        return 1e-3
+    some = points[:: max(len(points) // 2000, 1)]
+    away = np.asarray(KDTree(points).query(some, k=[5])[0])
+    return max(float(np.median(away)), 1e-9)

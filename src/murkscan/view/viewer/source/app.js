@@ -1,0 +1,142 @@
+// What the reader has chosen, and everything that follows from it.
+
+import { cutModel, cutTool, firstCut, shareThrough } from "./cut_tool.js";
+import { Drawing } from "./drawing.js";
+import { showAxes, showLegend, showScale } from "./furniture.js";
+import { makeHelp, startKeys } from "./keys.js";
+import { Lines, pieces } from "./lines.js";
+import { drawMeasures, measureTool } from "./measure_tool.js";
+import { pointOf } from "./model.js";
+import { buildPanel, describeModel } from "./panel.js";
+import { pathTool, startPlaying } from "./path_tool.js";
+import { showReading, startPointer } from "./pointer.js";
+import { planeThrough } from "./section.js";
+import { showTool } from "./show_tool.js";
+import { colourTable } from "./unpack.js";
+import { viewsTool } from "./views_tool.js";
+
+export class App {
+  constructor(content, models, stage) {
+    this.content = content;
+    this.models = models;
+    this.stage = stage;
+    this.colours = Object.fromEntries(
+      Object.entries(content.maps).map(([name, text]) => [name, colourTable(text)]));
+    const preferred = models[0].values.deviation ? "deviation" : "depth";
+    this.state = {
+      scan: 0, kind: "surface", layer: preferred, ranges: {}, cut: null, along: null,
+      measuring: false, first: null, snapped: null, measures: [], read: null,
+      path: false, profile: Infinity, playing: false,
+    };
+    this.lines = new Lines();
+    stage.drawings = models.map((model) => new Drawing(model, content.maps));
+    stage.scene.add(...stage.drawings.map(({ group }) => group), this.lines.group);
+    const { box, views } = models[0];
+    const size = Math.hypot(...box.high.map((high, axis) => high - box.low[axis]));
+    stage.start(views.front[1].map((x) => -x), Math.max(size, 1e-4));
+    stage.listeners.push(() => this.follow());
+    this.help = makeHelp();
+    this.tools = [showTool, viewsTool, measureTool, cutTool, pathTool].map((tool) => tool(this));
+    buildPanel(this, this.tools);
+    startKeys(this);
+    startPointer(this);
+    this.update({});
+    this.lookFrom("isometric");
+  }
+
+  get model() { return this.models[this.state.scan]; }
+  get layer() { return this.model.layers.find(({ name }) => name === this.state.layer) ?? null; }
+  get range() { return this.state.ranges[this.layer.name] ?? this.layer.range; }
+  get now() { return this.state.profile; }
+  get cut() { return this.section?.plane ?? null; }
+  get measures() { return this.state.measures.filter(({ scan }) => scan === this.state.scan); }
+
+  update(patch) {
+    if ("scan" in patch && patch.scan !== this.state.scan) {
+      Object.assign(patch, { first: null, snapped: null, read: null, along: null, profile: Infinity, playing: false });
+      if (this.state.cut?.axis === "measured") patch.cut = null;
+    }
+    Object.assign(this.state, patch);
+    if (["scan", "cut", "along"].some((name) => name in patch)) this.findSection();
+    this.sync();
+    this.stage.invalidate();
+  }
+
+  findSection() {
+    const { cut, along } = this.state;
+    this.section = cut ? cutModel(this.model, cut, along) : null;
+  }
+
+  sync() {
+    const { model, layer, state, stage, lines } = this;
+    stage.kind = state.kind;
+    stage.drawings.forEach((drawing, number) => {
+      drawing.group.visible = number === state.scan;
+    });
+    const drawing = stage.drawings[state.scan];
+    drawing.colourBy(layer, layer && this.range);
+    drawing.cutBy(this.cut);
+    drawing.uniforms.now.value = state.profile;
+    const { places = [], isLines } = this.section ?? {};
+    lines.setLine("section", isLines ? places : []);
+    lines.setSpots("dots", isLines ? [] : places);
+    this.syncTime();
+    showLegend(layer, layer && this.range, layer && this.colours[layer.map]);
+    showReading(this);
+    document.getElementById("about").textContent = describeModel(model, this.models.length > 1);
+    stage.canvas.classList.toggle("measuring", state.measuring);
+    for (const tool of this.tools) tool.sync();
+  }
+
+  // The newest profile bright, and the camera that sees it.
+  syncTime() {
+    const { model, lines, state } = this;
+    const isPartial = Number.isFinite(state.profile);
+    const [start, end] = isPartial ? [model.starts[state.profile], model.starts[state.profile + 1]] : [0, 0];
+    const fresh = model.positions.slice(3 * start, 3 * end);
+    const camera = isPartial ? model.path[state.profile] : undefined;
+    lines.setSpots("fresh", fresh);
+    lines.setSpots("camera", camera ?? []);
+    const ends = camera && end > start ? [start, end - 1].map((i) => pointOf(model, i)) : [];
+    lines.setLine("rays", ends.flatMap((place) => [...camera, ...place]));
+    lines.setLine("path", state.path || camera ? pieces(model.path, state.profile) : []);
+  }
+
+  // What moves with the view.
+  follow() {
+    showScale(this.stage);
+    showAxes(this.stage);
+    drawMeasures(this);
+  }
+
+  lookFrom(name) { this.stage.lookAlong(this.model.views[name], this.model); }
+
+  reset() {
+    this.update({ cut: null, profile: Infinity, playing: false, ranges: {} });
+    this.lookFrom("isometric");
+  }
+
+  toggleCut() { this.update({ cut: this.state.cut ? null : firstCut() }); }
+
+  cutWith(patch) {
+    const cut = { ...this.state.cut, ...patch };
+    if (patch.axis === "measured") cut.share = shareThrough(this.model, this.state.along);
+    this.update({ cut });
+  }
+
+  measure(first, second) {
+    const { scan, cut, measures } = this.state;
+    const sight = this.model.views.front[2].map((_, axis) =>
+      -this.stage.camera.matrixWorld.elements[8 + axis]);
+    const along = planeThrough(pointOf(this.model, first), pointOf(this.model, second), sight);
+    this.update({ first: null, along, measures: [...measures, { scan, first, second }] });
+    if (cut?.axis === "measured") this.cutWith({ axis: "measured" });
+  }
+
+  play(playing) {
+    if (this.model.times.length < 2) return;
+    this.update({ playing });
+    if (playing) startPlaying(this);
+  }
+}
+

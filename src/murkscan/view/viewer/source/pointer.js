@@ -1,0 +1,60 @@
+// Clicks and taps on the model: to measure, to read a point, to turn about it.
+
+import { NO_VALUE, pointOf } from "./model.js";
+import { length, valueText } from "./numbers.js";
+import { pick } from "./pick.js";
+
+const STILL = 6; // px that a click may move
+const NEAR = { mouse: 12, pen: 14, touch: 24 };
+
+export function startPointer(app) {
+  const { canvas } = app.stage;
+  let down = null;
+  canvas.addEventListener("pointerdown", (event) => { down = event.isPrimary ? event : null; });
+  canvas.addEventListener("pointerup", (event) => {
+    const is = down && event.button === 0
+      && Math.hypot(event.clientX - down.clientX, event.clientY - down.clientY) < STILL;
+    down = null;
+    if (is) click(app, find(app, event));
+  });
+  let waiting = false;
+  canvas.addEventListener("pointermove", (event) => {
+    if (!app.state.measuring || event.buttons || waiting) return;
+    waiting = true;
+    requestAnimationFrame(() => {
+      waiting = false;
+      const snapped = find(app, event);
+      if (snapped !== app.state.snapped) app.update({ snapped });
+    });
+  });
+  canvas.addEventListener("dblclick", (event) => {
+    const found = find(app, event);
+    if (found !== null && !app.state.measuring) app.stage.centreOn(pointOf(app.model, found));
+  });
+}
+
+function find(app, event) {
+  const { left, top } = app.stage.canvas.getBoundingClientRect();
+  return pick(app, event.clientX - left, event.clientY - top, NEAR[event.pointerType] ?? NEAR.mouse);
+}
+
+function click(app, found) {
+  const { measuring, first } = app.state;
+  if (!measuring) return app.update({ read: found });
+  if (found === null || found === first) return undefined;
+  if (first === null) return app.update({ first: found });
+  return app.measure(first, found);
+}
+
+// Everything that is known of a point.
+export function showReading(app) {
+  const element = document.getElementById("reading");
+  const { read } = app.state;
+  element.hidden = read === null;
+  if (read === null) return;
+  const { model } = app;
+  const place = pointOf(model, read).map((x, k) => `${"xyz"[k]} ${length(x + model.centre[k])}`);
+  const known = model.layers.filter(({ name }) => model.values[name][read] !== NO_VALUE)
+    .map(({ name, unit }) => `${name} ${valueText(model.values[name][read], unit)}`);
+  element.textContent = [...place, ...known, `profile ${model.moments[read] + 1}`].join("  ·  ");
+}

@@ -1,0 +1,165 @@
+"""The page on which a model is turned, cut and measured: one file, which needs no network."""
+
+import base64
+from collections.abc import Sequence
+from functools import lru_cache
+from importlib.resources import files
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from jinja2 import Environment, PackageLoader, StrictUndefined, Template
+from markupsafe import Markup
+
+from ..errors import InputError, NotEnoughData
+from ..types.arrays import Indices, Scalars
+from .depth import Depth
+from .model import Layer, Model
+from .packing import pack, pack_directions, pack_positions, pack_values
+
+_SHARE = 1.0
+"""Percent of a layer's values at each end that may lie beyond the colours."""
+_DEPTH_MAP = "viridis_r"
+
+
+def render_viewer(models: Sequence[Model], *, title: str, pictures: str = "") -> str:
+    """Make the page.
+
+    Args:
+        models: What it shows; of two or more, which lie in one world frame, one at a time.
+        title: Its name, such as the recording's.
+        pictures: Address of the page with the pictures, relative to this one; empty for none.
+
+    Returns:
+        The whole document, with all data in it. Text from outside is escaped.
+
+    Raises:
+        NotEnoughData: There is no model, or one without vertices.
+        InputError: A vertex is not finite.
+    """
+    for model in models:
+        _check(model)
+    if not models:
+        raise NotEnoughData("There is nothing to show: give one model or more.")
+    maps = {_DEPTH_MAP} | {layer.colour_map for model in models for layer in model.layers}
+    packed = [_pack_model(model) for model in models]
+    content = {
+        "title": title,
+        "pictures": pictures,
+        "maps": {name: _as_texture(name) for name in sorted(maps)},
+        "models": [about for about, _ in packed],
+    }
+    assets = files("murkscan.view") / "viewer"
+    return _template().render(
+        title=title,
+        content=content,
+        blobs=[blobs for _, blobs in packed],
+        style=Markup((assets / "viewer.css").read_text("utf-8")),
+        script=Markup((assets / "viewer.js").read_text("utf-8")),
+    )
+
+
+@lru_cache(maxsize=1)
+def _template() -> Template:
+    environment = Environment(
+        loader=PackageLoader("murkscan.view", "viewer"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.policies["json.dumps_kwargs"] = {"sort_keys": False, "allow_nan": False}
+    return environment.get_template("viewer.html")
+
+
+def _check(model: Model) -> None:
+    if len(model.vertices) == 0:
+        raise NotEnoughData(f"There is nothing to show of {model.name}: it has no points.")
+    broken = len(model.vertices) - int(np.isfinite(model.vertices).all(axis=1).sum())
+    if broken:
+        raise InputError(
+            f"{broken} of {len(model.vertices)} points of {model.name} are not finite; leave them "
+            "out."
+        )
+
+
+def _pack_model(model: Model) -> tuple[dict[str, Any], dict[str, str]]:
+    """Give what the page must know of a model, and its arrays as texts by name."""
+    unknown = np.zeros(len(model.vertices))
+    sigma = next((1e-3 * one.values for one in model.layers if one.name == "sigma"), unknown)
+    positions = pack_positions(model.vertices, sigma)
+    blobs = {
+        "positions": positions.text,
+        "normals": pack_directions(model.normals),
+        "faces": pack(model.faces, 4),
+        "moments": pack(model.moments[:, None], 4),
+    }
+    layers, typical = [_about_depth(model)], _typical(model)
+    for number, layer in enumerate(model.layers):
+        blobs[f"layer{number}"], low, step = pack_values(layer.values)
+        layers.append(_about(layer, typical) | {"blob": f"layer{number}", "low": low, "step": step})
+    about = {
+        "name": model.name,
+        "note": model.note,
+        "vertices": len(model.vertices),
+        "measured": model.num_measured,
+        "faces": len(model.faces),
+        "positions": positions.as_plain(),
+        "spacing": model.spacing,
+        "layers": layers,
+        "times": _rounded(model.times, 6),
+        "path": _rounded(model.path - np.array(positions.low), 6),
+        "views": {view.name: _rounded(view.view_from_world, 9) for view in model.views},
+    }
+    return about, blobs
+
+
+def _about_depth(model: Model) -> dict[str, Any]:
+    """Describe the layer that the page finds from the positions."""
+    front = next(view for view in model.views if view.name == "front")
+    x, y, z = (float(part) for part in front.view_from_world[2])
+    legend = Depth((x, y, z)).legend(model.vertices[_typical(model)])
+    return {
+        "name": "depth",
+        "unit": "mm",
+        "map": _DEPTH_MAP,
+        "signed": False,
+        "range": [legend.low, legend.high] if legend else [0.0, 1.0],
+    }
+
+
+def _typical(model: Model) -> Indices:
+    """Give the vertices that decide on the colours: stray points are on no surface."""
+    return np.unique(model.faces) if len(model.faces) else np.arange(len(model.vertices))
+
+
+def _about(layer: Layer, typical: Indices) -> dict[str, Any]:
+    return {
+        "name": layer.name,
+        "unit": layer.unit,
+        "map": layer.colour_map,
+        "signed": layer.is_signed,
+        "range": _range(layer.values[typical], is_signed=layer.is_signed),
+    }
+
+
+def _range(values: Scalars, *, is_signed: bool) -> list[float]:
+    """Give the values at the ends of the colours."""
+    finite = values[np.isfinite(values)]
+    if len(finite) == 0:
+        return [0.0, 1.0]
+    low, high = (float(end) for end in np.percentile(finite, [_SHARE, 100 - _SHARE]))
+    if is_signed:
+        far = max(-low, high, 1e-9)
+        return [-far, far]
+    return [low, high] if high > low else [low - 0.5, low + 0.5]
+
+
+def _as_texture(name: str) -> str:
+    """Give the 256 colours of a map, three bytes each, in base64."""
+    colours = np.rint(mpl.colormaps[name](np.arange(256))[:, :3] * 255).astype(np.uint8)
+    return base64.b64encode(colours.tobytes()).decode()
+
+
+def _rounded(values: np.ndarray, digits: int) -> list[Any]:
+    return np.round(values, digits).tolist()
