@@ -19,6 +19,7 @@ _COMMANDS = {
     "motion": "Find where the camera was in each frame.",
     "cloud": "Merge the profiles into one cloud of points.",
     "mesh": "Make a surface from the cloud.",
+    "measure": "Take measures of a scan, each with its uncertainty.",
     "view": "Draw pictures of the surface.",
     "report": "Write a page on how the scan went.",
     "simulate": "Make a recording whose truth is known.",
@@ -33,7 +34,7 @@ app = App(
     suppress_keyboard_interrupt=False,
 )
 for _name, _help in _COMMANDS.items():
-    _target = "app" if _name == "calibrate" else _name
+    _target = "app" if _name in ("calibrate", "measure") else _name
     app.command(f"murkscan.cli.{_name}:{_target}", name=_name, help=_help)
 
 

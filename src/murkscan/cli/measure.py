@@ -1,0 +1,173 @@
+"""murkscan measure: take measures of a finished scan."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from cyclopts import App, Parameter
+
+from ..errors import InputError
+from .measure_part import PartFlags, print_measurement, read_place
+
+if TYPE_CHECKING:
+    from ..measure import Sample
+    from ..types.measurement import Measurement
+
+What = Literal["distance", "section", "plane", "sphere", "cylinder"]
+
+app = App(
+    name="measure",
+    help="Take measures of a scan, each with its uncertainty; `murkscan measure WHAT --help` tells "
+    "what each wants to know.",
+    usage="Usage: murkscan measure OUT WHAT [OPTIONS]\n",
+)
+
+
+@app.default
+def measure(
+    out: Annotated[Path, Parameter(show=False)],
+    what: Annotated[What, Parameter(show=False)],
+    *more: Annotated[str, Parameter(allow_leading_hyphen=True, show=False)],
+) -> None:
+    """Take measures of a scan, each with its uncertainty, into OUT/measure.
+
+    Parameters
+    ----------
+    out
+        Folder of the scan.
+    what
+        What to measure.
+    """
+    app(
+        [what, str(out), *more],
+        exit_on_error=False,
+        print_error=False,
+        result_action="return_value",
+    )
+
+
+@app.command
+def distance(out: Path, *, from_m: str, to_m: str, name: str = "distance") -> None:
+    """Measure between two points of the scan.
+
+    Parameters
+    ----------
+    out
+        Folder of the scan, with a finished cloud stage.
+    from_m
+        Where it begins, as X,Y,Z read off cloud.ply [m]; the nearest point of the scan counts.
+    to_m
+        Where it ends [m].
+    name
+        What to call it: OUT/measure/NAME.json.
+    """
+    import numpy as np
+
+    from ..measure import measure_distance
+    from ..project import Project
+    from ..survey.measure import measure_points
+
+    ends = np.array([read_place("--from-m", from_m), read_place("--to-m", to_m)])
+    project = Project(out)
+    print_measurement(
+        out, name, measure_points(project, lambda points: measure_distance(points, ends), name=name)
+    )
+
+
+@app.command
+def plane(out: Path, *, part: PartFlags = PartFlags(), name: str = "plane") -> None:
+    """Fit a plane to a part of the scan.
+
+    Parameters
+    ----------
+    out
+        Folder of the scan, with a finished cloud stage.
+    name
+        What to call it: OUT/measure/NAME.json.
+    """
+    from ..measure import measure_plane
+
+    _measure_part(out, measure_plane, part, name)
+
+
+@app.command
+def sphere(out: Path, *, part: PartFlags = PartFlags(), name: str = "sphere") -> None:
+    """Fit a sphere to a part of the scan.
+
+    Parameters
+    ----------
+    out
+        Folder of the scan, with a finished cloud stage.
+    name
+        What to call it: OUT/measure/NAME.json.
+    """
+    from ..measure import measure_sphere
+
+    _measure_part(out, measure_sphere, part, name)
+
+
+@app.command
+def cylinder(out: Path, *, part: PartFlags = PartFlags(), name: str = "cylinder") -> None:
+    """Fit a cylinder to a part of the scan, such as a pipe or a pile.
+
+    Parameters
+    ----------
+    out
+        Folder of the scan, with a finished cloud stage.
+    name
+        What to call it: OUT/measure/NAME.json.
+    """
+    from ..measure import measure_cylinder
+
+    _measure_part(out, measure_cylinder, part, name)
+
+
+@app.command
+def section(
+    out: Path,
+    *,
+    point_m: str,
+    normal: str,
+    formats: str = "svg,csv",
+    name: str = "section",
+) -> None:
+    """Cut the surface by a plane, and draw the lines in millimetres.
+
+    Parameters
+    ----------
+    out
+        Folder of the scan, with finished cloud and mesh stages.
+    point_m
+        A point of the plane, as X,Y,Z [m].
+    normal
+        Its normal, as X,Y,Z of any length: 0,1,0 cuts across y.
+    formats
+        What to write of dxf, svg and csv; dxf needs the extra murkscan[formats].
+    name
+        What to call it: OUT/measure/NAME.json, .svg …
+    """
+    import numpy as np
+
+    from ..project import Project
+    from ..survey.measure import measure_cut
+    from ..types.plane import Plane
+
+    direction = np.array(read_place("--normal", normal))
+    if not direction.any():
+        raise InputError("--normal 0,0,0 is no direction; give one such as 0,1,0.")
+    cut = Plane.through(np.array(read_place("--point-m", point_m)), direction)
+    chosen = formats.split(",")
+    if unknown := set(chosen) - {"dxf", "svg", "csv"}:
+        raise InputError(f"--formats takes dxf, svg and csv, got {', '.join(sorted(unknown))}.")
+    found = measure_cut(Project(out), cut, name=name, formats=chosen)
+    print_measurement(out, name, found, suffixes=tuple(chosen))
+
+
+def _measure_part(
+    out: Path, measure: "Callable[[Sample], Measurement]", part: PartFlags, name: str
+) -> None:
+    from ..project import Project
+    from ..survey.measure import measure_points
+
+    found = measure_points(Project(out), measure, name=name, selection=part.select())
+    print_measurement(out, name, found)

@@ -1,0 +1,103 @@
+"""Flags that say which part of a scan is measured, and what a measurement prints."""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from cyclopts import Parameter
+
+from ..errors import InputError
+from .options import read_numbers
+from .words import print_table, say
+
+if TYPE_CHECKING:
+    from ..measure import Selection
+    from ..types.measurement import Measurement
+    from ..types.quantity import Quantity
+
+_SHOWN = {"m": ("mm", 1e3), "m2": ("cm²", 1e4), "m3": ("cm³", 1e6), "rad": ("°", 180 / math.pi)}
+"""Units as people read them, and how many go into ours."""
+
+
+@Parameter(name="*")
+@dataclass(frozen=True)
+class PartFlags:
+    """Which part of the scan: all of it, --near-m and --within-mm, or --box-m."""
+
+    near_m: str | None = None
+    """Middle of the part that is measured, as X,Y,Z [m]; with --within-mm."""
+    within_mm: float | None = None
+    """How far the part reaches from there [mm]."""
+    box_m: str | None = None
+    """The part as two corners of a box, X,Y,Z,X,Y,Z [m]."""
+
+    def select(self) -> "Selection | None":
+        """Give the part; None: all of the scan."""
+        from ..measure import Ball, Box
+
+        is_ball = self.near_m is not None
+        if is_ball != (self.within_mm is not None) or (is_ball and self.box_m is not None):
+            raise InputError(
+                "Choose a part with --near-m and --within-mm together, or with --box-m."
+            )
+        if self.near_m is not None and self.within_mm is not None:
+            return Ball(read_place("--near-m", self.near_m), self.within_mm / 1e3)
+        if self.box_m is None:
+            return None
+        numbers = read_numbers(self.box_m, 6)
+        if numbers is None:
+            raise InputError(f"--box-m {self.box_m!r} is not X,Y,Z,X,Y,Z in metres.")
+        low, high = map(min, numbers[:3], numbers[3:]), map(max, numbers[:3], numbers[3:])
+        return Box(_three(low), _three(high))
+
+
+def read_place(flag: str, text: str) -> tuple[float, float, float]:
+    """Read X,Y,Z."""
+    numbers = read_numbers(text, 3)
+    if numbers is None:
+        raise InputError(
+            f"{flag} {text!r} is not X,Y,Z; give three numbers such as 0.12,0.5,0.803."
+        )
+    return _three(numbers)
+
+
+def print_measurement(
+    out: Path, name: str, found: "Measurement", *, suffixes: tuple[str, ...] = ()
+) -> None:
+    """Print a measurement as a table, and where it was written."""
+    rows = [_row(quantity) for quantity in found.quantities]
+    columns = (found.kind, "value", "± 95 %", "1σ own", "1σ common", "unit")
+    print_table("", columns, rows)
+    if any(quantity.sigma_common is None for quantity in found.quantities):
+        say(
+            "The rig file states no covariance: the common part is unknown, and not in ± 95 %; "
+            "murkscan calibrate finds it."
+        )
+    for kind in ("json", *suffixes):
+        say(str(out / "measure" / f"{name}.{kind}"))
+
+
+def _row(quantity: "Quantity") -> tuple[str, ...]:
+    unit, scale = _SHOWN.get(quantity.unit, (quantity.unit, 1.0))
+    half, common = scale * quantity.half_width, quantity.sigma_common
+    return (
+        quantity.name.replace("_", " "),
+        _round(scale * quantity.value, half),
+        _round(half, half),
+        _round(scale * quantity.sigma_independent, half),
+        "unknown" if common is None else _round(scale * common, half),
+        unit,
+    )
+
+
+def _round(value: float, uncertainty: float) -> str:
+    """Write a number to two digits of its uncertainty."""
+    digits = 1 - math.floor(math.log10(uncertainty)) if uncertainty > 0 else 4
+    return f"{value:.{min(max(digits, 0), 9)}f}"
+
+
+def _three(numbers: Iterable[float]) -> tuple[float, float, float]:
+    x, y, z = numbers
+    return x, y, z

@@ -1,0 +1,158 @@
+"""The covariance of a least-squares fit whose points err together with their neighbours.
+
+A finder's error depends on where in its pixel the stripe lies, on the paint and on the glow: points
+that lie next to each other are off by nearly the same. Ten thousand points then tell no more than
+the few hundred patches in which they agree, and the usual covariance is far too small.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+from scipy.ndimage import convolve1d
+
+from ..types.arrays import Indices, Scalars
+from .shape import Slopes
+
+_QUIET_LAGS = 4
+"""Lags in a row without correlation after which there is none."""
+_SIGNIFICANT = 2.0
+"""Standard deviations of a correlation's noise above which it is one."""
+_MOST_LAGS = 64
+"""Cells over which a correlation is looked for."""
+_LARGEST_SHARE = 0.25
+"""Share of the grid's extent over which errors are taken to hang together at most: of less than
+four patches no spread can be told."""
+_WIDTH = 4
+"""Reaches within which pairs of points count, less and less."""
+_FLOOR = 0.25
+"""Share of the variance of independent errors below which none is believed: fringes that cancel
+along a profile are real, but not for ever."""
+
+
+@dataclass(frozen=True, eq=False)
+class FitCovariance:
+    """How well a fit's parameters are determined by its points."""
+
+    matrix: Float[np.ndarray, "p p"]
+    """Covariance of the parameters."""
+    degrees: float
+    """Independent patches of error that were seen, less the parameters; at least 1."""
+    reach: tuple[int, int]
+    """Profiles, and scan lines, over which errors hang together."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Cells:
+    """Points in a dense grid of profiles and scan lines."""
+
+    profile: Indices
+    line: Indices
+
+    @classmethod
+    def of(cls, profile: Indices, line: Indices) -> "_Cells":
+        _, compact = np.unique(profile, return_inverse=True)
+        # Profiles that follow one another stay neighbours, gaps and other passes shrink to a gap.
+        numbers = np.unique(profile)
+        steps = np.minimum(np.diff(numbers), _MOST_LAGS)
+        packed = np.concatenate([[0], np.cumsum(steps)])[compact]
+        return cls(packed, line - line.min())
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        return int(self.profile.max()) + 1, int(self.line.max()) + 1
+
+    def fill(self, values: Scalars) -> Float[np.ndarray, "h w"]:
+        """Sum the values of each cell; 0 where there is none."""
+        height, width = self.shape
+        cell = self.profile * width + self.line
+        return np.bincount(cell, values, height * width).reshape(height, width)
+
+
+def covariance_of_fit(
+    slopes: Slopes, residuals: Scalars, profile: Indices, line: Indices
+) -> FitCovariance:
+    """Give the covariance of the parameters of a least-squares fit from its own residuals.
+
+    How far errors hang together, along the profiles and across them, is read off the residuals'
+    correlation; then the products of all pairs of points within four times that reach are
+    summed. That holds whatever the errors' size, which may differ from place to place. What
+    the whole of the points share, such as the rig's own error, no residual shows.
+
+    Args:
+        slopes: Change of each residual with each parameter.
+        residuals: What is left of each point [m].
+        profile: Number of each point's profile; those that follow one another differ by 1.
+        line: Number of each point's scan line.
+
+    References:
+        Conley, GMM estimation with cross sectional dependence, J. Econometrics 92, 1999.
+        Newey and West, A simple, positive semi-definite, heteroskedasticity and autocorrelation
+        consistent covariance matrix, Econometrica 55(3), 1987 (the weights).
+        Politis and White, Automatic block-length selection for the dependent bootstrap,
+        Econometric Reviews 23(1), 2004, section 3.2 (the reach).
+    """
+    count, parameters = slopes.shape
+    cells = _Cells.of(profile, line)
+    reach = _find_reach(cells, residuals)
+    # Scaled, so that metres and radians do not spoil the inverse.
+    scale = np.maximum(np.linalg.norm(slopes, axis=0), 1e-300)
+    scaled = slopes / scale
+    bread = np.linalg.inv(scaled.T @ scaled)
+    meat = _sum_pairs(cells, scaled * residuals[:, None], reach)
+    single = scaled.T @ (scaled * (residuals**2)[:, None])
+    meat = _at_least(meat, _FLOOR * single)
+    inflation = float(np.trace(bread @ meat) / max(np.trace(bread @ single), 1e-300))
+    degrees = max(count / max(inflation, 1.0) - parameters, 1.0)
+    correction = (degrees + parameters) / degrees
+    matrix = correction * (bread @ meat @ bread) / np.outer(scale, scale)
+    return FitCovariance(matrix, degrees, reach)
+
+
+def _find_reach(cells: _Cells, residuals: Scalars) -> tuple[int, int]:
+    values, there = cells.fill(residuals), cells.fill(np.ones_like(residuals))
+    values = np.divide(values, there, out=np.zeros_like(values), where=there > 0)
+    there = (there > 0).astype(float)
+    return _reach_along(values, there), _reach_along(values.T, there.T)
+
+
+def _reach_along(values: np.ndarray, there: np.ndarray) -> int:
+    """Give the lag along the first axis from which on the values do not go together."""
+    extent = len(values)
+    most = min(_MOST_LAGS, max(int(_LARGEST_SHARE * extent), 1))
+    variance = float((values**2).sum() / max(there.sum(), 1.0))
+    quiet = 0
+    for lag in range(1, most + 1):
+        pairs = float((there[lag:] * there[:-lag]).sum()) if lag < extent else 0.0
+        if pairs < 2 or variance == 0:
+            return lag - quiet
+        correlation = float((values[lag:] * values[:-lag]).sum()) / (pairs * variance)
+        limit = _SIGNIFICANT * np.sqrt(np.log10(pairs) / pairs)
+        quiet = quiet + 1 if abs(correlation) < limit else 0
+        if quiet == _QUIET_LAGS:
+            return lag - quiet + 1
+    return most
+
+
+def _sum_pairs(
+    cells: _Cells, moments: Float[np.ndarray, "n p"], reach: tuple[int, int]
+) -> Float[np.ndarray, "p p"]:
+    """Sum the products of the moments of all pairs of points, less and less with their distance."""
+    widths = [_WIDTH * r for r in reach]
+    weights = [1 - np.abs(np.arange(-w + 1, w)) / w for w in widths]
+    maps = [cells.fill(moment) for moment in moments.T]
+    spread = [
+        convolve1d(convolve1d(m, weights[0], axis=0, mode="constant"), weights[1], mode="constant")
+        for m in maps
+    ]
+    return np.array([[float((m * s).sum()) for s in spread] for m in maps])
+
+
+def _at_least(
+    matrix: Float[np.ndarray, "p p"], least: Float[np.ndarray, "p p"]
+) -> Float[np.ndarray, "p p"]:
+    """Raise a covariance, in each direction, to what another one has there."""
+    root = np.linalg.cholesky(least + 1e-300 * np.eye(len(least)))
+    inverse = np.linalg.inv(root)
+    sizes, axes = np.linalg.eigh(inverse @ (matrix + matrix.T) @ inverse.T / 2)
+    return root @ (axes * np.maximum(sizes, 1.0)) @ axes.T @ root.T

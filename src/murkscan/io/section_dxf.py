@@ -1,0 +1,54 @@
+"""Sections as DXF drawings, by ezdxf. Extra `[formats]`."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import MissingDependency
+from .atomic import replacing
+
+if TYPE_CHECKING:
+    from types import ModuleType
+
+_LAYER = "SECTION"
+
+
+def save_section_dxf(path: Path, drawing: Sequence[np.ndarray]) -> None:
+    """Write a section's lines as polylines in millimetres, DXF R2010, on the layer SECTION.
+
+    Args:
+        path: Where the file shall be.
+        drawing: Each line in the drawing's x and y [m]; n 2 each.
+
+    Raises:
+        MissingDependency: ezdxf is not installed.
+        DeviceError: The disk is full or cannot be written.
+    """
+    ezdxf = require_ezdxf()
+    document = ezdxf.new("R2010", units=ezdxf.units.MM)
+    document.layers.add(_LAYER)
+    space = document.modelspace()
+    for line in drawing:
+        is_closed = len(line) > 2 and np.array_equal(line[0], line[-1])
+        corners = (line[:-1] if is_closed else line) * 1e3
+        space.add_lwpolyline(corners.tolist(), close=is_closed, dxfattribs={"layer": _LAYER})
+    with replacing(path) as aside:
+        document.saveas(aside)
+
+
+def require_ezdxf() -> "ModuleType":
+    """Give ezdxf.
+
+    Raises:
+        MissingDependency: It is not installed.
+    """
+    try:
+        import ezdxf
+    except ModuleNotFoundError as error:
+        raise MissingDependency(
+            'DXF needs ezdxf: pip install "murkscan[formats]", or ".[formats]" in a clone; or '
+            "leave it out with --formats svg,csv."
+        ) from error
+    return ezdxf

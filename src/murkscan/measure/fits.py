@@ -1,0 +1,111 @@
+"""Plane, sphere and cylinder through a part of a scan."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..geometry.cylinder_fit import fit_cylinder
+from ..geometry.plane_fit import fit_plane
+from ..geometry.shape import AnyShape
+from ..geometry.shape_fit import ShapeFit, refine_shape, require_points
+from ..geometry.sphere_fit import fit_sphere
+from ..types.measurement import Measurement
+from ..types.plane import Plane, span_plane
+from ..types.quantity import Quantity
+from .sample import Sample
+from .trust import LinearMap, Trust, trust_fit
+
+
+def measure_plane(sample: Sample) -> Measurement:
+    """Fit a plane: its unit normal, and the distance of the world's origin from it.
+
+    The normal is turned to the camera.
+
+    Raises:
+        NotEnoughData: Fewer than four points.
+        Degenerate: The points lie on one line.
+    """
+    fit, trust = trust_plane(sample)
+    plane, sides = fit.shape, span_plane(fit.shape.normal)
+    how = np.zeros((4, 3))
+    how[1:, :2] = sides.T
+    how[0] = [*(-(sides @ fit.middle)), 1.0]
+    values = dict(zip("xyz", plane.normal.tolist(), strict=True))
+    named = {"distance": plane.distance} | {f"normal_{axis}": n for axis, n in values.items()}
+    return _tell("plane", fit, trust, named, ("m", "", "", ""), how)
+
+
+def trust_plane(sample: Sample) -> tuple[ShapeFit[Plane], Trust]:
+    """Fit a plane whose normal points to the camera, and find how far to trust it.
+
+    Raises:
+        NotEnoughData: Fewer than four points.
+        Degenerate: The points lie on one line.
+    """
+    points = sample.cloud.points
+    require_points(points, 4, "plane")
+    middle = points.mean(axis=0)
+    start = fit_plane(points - middle).plane
+    if np.sum(sample.cloud.normals @ start.normal) < 0:
+        start = Plane(-start.normal, -start.distance)
+    fit = refine_shape(start, points - middle).shifted(middle)
+    return fit, trust_fit(fit, sample)
+
+
+def measure_sphere(sample: Sample) -> Measurement:
+    """Fit a sphere: radius, diameter and centre.
+
+    Raises:
+        NotEnoughData: Fewer than five points.
+        Degenerate: The points lie in a plane, or cover too little of the sphere.
+        NotConverged: No sphere settles.
+    """
+    fit = fit_sphere(sample.cloud.points, sight=sample.sight)
+    sphere = fit.shape
+    values = {"radius": sphere.radius, "diameter": 2 * sphere.radius}
+    values |= dict(zip(("x", "y", "z"), sphere.centre.tolist(), strict=True))
+    how = np.zeros((5, fit.slopes.shape[1]))
+    how[0, 3], how[1, 3] = 1, 2
+    how[2:, :3] = np.eye(3)
+    return _tell("sphere", fit, trust_fit(fit, sample), values, ("m",) * 5, how)
+
+
+def measure_cylinder(sample: Sample) -> Measurement:
+    """Fit a cylinder: radius, diameter, a point of its axis and the axis' direction.
+
+    Raises:
+        NotEnoughData: Fewer than six points.
+        Degenerate: The points do not curve, or cover too little of the cylinder.
+        NotConverged: No cylinder settles.
+    """
+    normals = sample.cloud.normals.astype(float)
+    fit = fit_cylinder(sample.cloud.points, normals, sight=sample.sight)
+    cylinder, sides = fit.shape, span_plane(fit.shape.axis)
+    values = {"radius": cylinder.radius, "diameter": 2 * cylinder.radius}
+    values |= dict(zip(("x", "y", "z"), cylinder.point.tolist(), strict=True))
+    values |= dict(zip(("axis_x", "axis_y", "axis_z"), cylinder.axis.tolist(), strict=True))
+    how = np.zeros((8, fit.slopes.shape[1]))
+    how[0, 4], how[1, 4] = 1, 2
+    how[2:5, :2] = how[5:, 2:4] = sides.T
+    units = ("m",) * 5 + ("",) * 3
+    return _tell("cylinder", fit, trust_fit(fit, sample), values, units, how)
+
+
+def _tell(
+    kind: str,
+    fit: ShapeFit[AnyShape],
+    trust: Trust,
+    values: dict[str, float],
+    units: Sequence[str],
+    how: LinearMap,
+) -> Measurement:
+    """Say what a fit gave, and how well its points agree."""
+    spread = fit.rms / math.sqrt(2 * trust.degrees)
+    rms = Quantity("rms_residual", fit.rms, "m", spread, 0.0, trust.degrees)
+    details = {
+        "points": len(fit.inliers),
+        "inliers": int(fit.inliers.sum()),
+        "independent_patches": round(trust.degrees + fit.slopes.shape[1]),
+    }
+    return Measurement(kind, (*trust.as_quantities(values, units, how), rms), details)

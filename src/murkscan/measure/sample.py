@@ -1,0 +1,76 @@
+"""The points that a measure is taken of, and what is known of their errors."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+
+from ..errors import NotEnoughData
+from ..geometry.grid import ScanGrid
+from ..geometry.stripe_blur import Sight
+from ..types.arrays import Indices, Mask
+from ..types.cloud import PointCloud
+
+Shifts = Float[np.ndarray, "n 3 modes"]
+"""How far points move with each independent error of the rig, at one standard deviation [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sample:
+    """Points of a scan; one a row."""
+
+    cloud: PointCloud
+    """The points, in the world."""
+    profile: Indices
+    """Number of each point's profile; those that follow one another differ by 1."""
+    line: Indices
+    """Number of each point's scan line."""
+    sight: Sight | None = None
+    """From where each was seen; None where nobody knows."""
+    shifts: Callable[[Indices], Shifts] | None = None
+    """Gives, in the world, how far some of the points move with the rig's errors; None where the
+    rig states none."""
+
+    @classmethod
+    def from_cloud(
+        cls,
+        cloud: PointCloud,
+        *,
+        sight: Sight | None = None,
+        shifts: Callable[[Indices], Shifts] | None = None,
+    ) -> "Sample":
+        """Take all points of a cloud.
+
+        Args:
+            cloud: The points.
+            sight: From where each was seen.
+            shifts: Gives how far points move with the rig's errors [m].
+
+        Raises:
+            InputError: A point is not finite.
+            NotEnoughData: There are no points.
+        """
+        if len(cloud) == 0:
+            raise NotEnoughData(
+                "The cloud has no points, so there is nothing to measure: look at extract/overlay "
+                "to see what was found in the frames."
+            )
+        grid = ScanGrid.from_cloud(cloud)
+        return cls(cloud, grid.profile, grid.line, sight, shifts)
+
+    def __len__(self) -> int:
+        """Count the points."""
+        return len(self.cloud)
+
+    def __getitem__(self, which: Mask) -> "Sample":
+        """Pick some of the points."""
+        numbers, shifts = np.flatnonzero(which), self.shifts
+        return replace(
+            self,
+            cloud=self.cloud[which],
+            profile=self.profile[which],
+            line=self.line[which],
+            sight=None if self.sight is None else self.sight[which],
+            shifts=None if shifts is None else lambda some: shifts(numbers[some]),
+        )

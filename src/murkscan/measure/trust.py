@@ -1,0 +1,86 @@
+"""How far to trust the parameters of a fit."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from ..geometry.correlated_errors import covariance_of_fit
+from ..geometry.shape import AnyShape
+from ..geometry.shape_fit import ShapeFit
+from ..types.quantity import Quantity
+from .sample import Sample
+
+_MOST_SHIFTED = 2000
+"""Points for which the rig's errors are traced: they vary slowly over a shape."""
+
+LinearMap = Float[np.ndarray, "q p"]
+"""Change of each quantity with each parameter of a fit."""
+
+
+@dataclass(frozen=True, eq=False)
+class Trust:
+    """Both parts of the uncertainty of a fit's parameters."""
+
+    independent: Float[np.ndarray, "p p"]
+    """Covariance from what differs between points."""
+    degrees: float
+    """Degrees of freedom behind it."""
+    common: Float[np.ndarray, "p modes"] | None
+    """How the parameters move with each independent error of the rig, at one standard deviation;
+    None where the rig states none."""
+
+    def as_quantities(
+        self, values: dict[str, float], units: Sequence[str], how: LinearMap
+    ) -> tuple[Quantity, ...]:
+        """Give quantities that follow from the parameters, with their uncertainty.
+
+        Args:
+            values: Each quantity by its name.
+            units: Their units.
+            how: How each changes with each parameter.
+        """
+        independent = np.sqrt(np.maximum(np.einsum("qp,pr,qr->q", how, self.independent, how), 0))
+        common = None if self.common is None else np.linalg.norm(how @ self.common, axis=1)
+        return tuple(
+            Quantity(
+                name,
+                value,
+                units[i],
+                float(independent[i]),
+                None if common is None else float(common[i]),
+                self.degrees,
+            )
+            for i, (name, value) in enumerate(values.items())
+        )
+
+
+def trust_fit(fit: ShapeFit[AnyShape], sample: Sample) -> Trust:
+    """Find how far a fit's parameters are to be trusted.
+
+    Args:
+        fit: The fit to the sample's points.
+        sample: The points that were fitted.
+    """
+    inside = fit.inliers
+    independent = covariance_of_fit(
+        fit.slopes[inside], fit.residuals[inside], sample.profile[inside], sample.line[inside]
+    )
+    return Trust(independent.matrix, independent.degrees, _common_moves(fit, sample))
+
+
+def _common_moves(fit: ShapeFit[AnyShape], sample: Sample) -> Float[np.ndarray, "p modes"] | None:
+    """Give how a fit's parameters follow when the rig's errors move its points."""
+    if sample.shifts is None:
+        return None
+    inside = np.flatnonzero(fit.inliers)
+    some = inside[:: max(len(inside) // _MOST_SHIFTED, 1)]
+    shifts = sample.shifts(some)
+    normals = fit.shape.normals(sample.cloud.points[some])
+    outwards = np.einsum("ij,ijm->im", normals, shifts)
+    known = np.isfinite(outwards).all(axis=1)
+    slopes = fit.slopes[some][known]
+    scale = np.maximum(np.linalg.norm(slopes, axis=0), 1e-300)
+    moves, *_ = np.linalg.lstsq(slopes / scale, -outwards[known], rcond=None)
+    return moves / scale[:, None]

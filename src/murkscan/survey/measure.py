@@ -1,0 +1,76 @@
+"""Measure a finished scan, and keep what was found in OUT/measure."""
+
+from collections.abc import Callable, Collection
+
+from ..io.section_csv import save_section_csv
+from ..io.section_dxf import require_ezdxf, save_section_dxf
+from ..io.section_svg import save_section_svg
+from ..measure import Sample, Selection, cut_section, measure_section
+from ..project import Project
+from ..types.measurement import Measurement
+from ..types.plane import Plane
+from .measured import measure_file, save_measurement
+from .sample import load_sample
+
+
+def measure_points(
+    project: Project,
+    measure: Callable[[Sample], Measurement],
+    *,
+    name: str | None = None,
+    selection: Selection | None = None,
+) -> Measurement:
+    """Take one measure of a scan's points, and write measure/<name>.json.
+
+    Args:
+        project: A scan with a finished cloud stage.
+        measure: What to measure, such as `murkscan.measure.measure_sphere`.
+        name: What to call it; what was measured unless given.
+        selection: Which part of the scan; all of it unless given.
+
+    Raises:
+        MissingResult: The cloud stage has not been finished.
+        EstimationError: The points do not determine it.
+        InputError: The name is none for a file, or a point is not finite.
+    """
+    if name is not None:
+        measure_file(project, name)
+    measured = measure(load_sample(project, selection))
+    save_measurement(project, name or measured.kind, measured)
+    return measured
+
+
+def measure_cut(
+    project: Project,
+    plane: Plane,
+    *,
+    name: str = "section",
+    formats: Collection[str] = ("svg", "csv"),
+) -> Measurement:
+    """Cut a scan's surface by a plane, and write the lines and measure/<name>.json.
+
+    Args:
+        project: A scan with a finished mesh stage.
+        plane: The plane, in the world.
+        name: What to call it.
+        formats: Which of dxf, svg and csv to write.
+
+    Raises:
+        MissingResult: The mesh stage has not been finished.
+        MissingDependency: DXF is asked for, and ezdxf is not installed.
+        NotEnoughData: The plane does not meet the surface.
+    """
+    files = {kind: measure_file(project, name, kind) for kind in formats}
+    if "dxf" in files:
+        require_ezdxf()
+    section = cut_section(project.load_mesh(), plane)
+    measured, sigmas = measure_section(section, load_sample(project))
+    drawing = section.as_drawing()
+    if "csv" in files:
+        save_section_csv(files["csv"], drawing, section.lines, sigmas)
+    if "svg" in files:
+        save_section_svg(files["svg"], drawing, title=f"Section {name}")
+    if "dxf" in files:
+        save_section_dxf(files["dxf"], drawing)
+    save_measurement(project, name, measured)
+    return measured

@@ -1,0 +1,117 @@
+"""The points of a scan as measures want them: seen from where, and moved by what."""
+
+from collections.abc import Callable
+
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial import KDTree
+from scipy.spatial.transform import Rotation
+
+from ..errors import NotEnoughData
+from ..geometry.stripe_blur import Sight
+from ..measure import Sample, Selection
+from ..optics.uncertainty import common_shifts
+from ..project import Project
+from ..types.arrays import Indices, Scalars, Vector
+from ..types.cloud import PointCloud
+from ..types.profile import Profile
+from ..types.rig import Rig
+from ..types.trajectory import Trajectory
+from .common_part import moving_rig
+from .scan_rig import load_scan_rig
+
+_FEWEST = 10
+"""Points of a selection below which a measure says nothing."""
+_MOST_TRACED = 300_000
+"""Points of a scan among which the nearest is looked up: the rig's error varies slowly."""
+
+
+def load_sample(project: Project, selection: Selection | None = None) -> Sample:
+    """Load the points of a scan's cloud, or a part of them.
+
+    Raises:
+        MissingResult: The cloud stage has not been finished.
+        NotEnoughData: Fewer than ten points are chosen.
+        InputError: A point is not finite.
+    """
+    cloud = project.load_cloud()
+    rig = moving_rig(project, load_scan_rig(project))
+    sample = Sample.from_cloud(
+        cloud,
+        sight=_look_back(project, cloud, rig),
+        shifts=_trace_shifts(project, cloud, rig) if rig.covariance.names else None,
+    )
+    if selection is None:
+        return sample
+    chosen = selection.contains(cloud.points)
+    if np.count_nonzero(chosen) < _FEWEST:
+        low, high = cloud.points.min(axis=0), cloud.points.max(axis=0)
+        raise NotEnoughData(
+            f"The selection holds {np.count_nonzero(chosen)} of {len(cloud)} points, at least "
+            f"{_FEWEST} are needed; the scan reaches from {_place(low)} to {_place(high)} m."
+        )
+    return sample[chosen]
+
+
+def _look_back(project: Project, cloud: PointCloud, rig: Rig) -> Sight | None:
+    """Find from where each point was seen; None where frames are not of this recording."""
+    times = _times_of(project, cloud)
+    if times is None:
+        return None
+    trajectory = project.load_trajectory()
+    cameras = trajectory.transform(np.zeros_like(cloud.points), times)
+    rays = cloud.points - cameras
+    rays /= np.maximum(np.linalg.norm(rays, axis=1, keepdims=True), 1e-12)
+    axes = {laser: rig.lasers[laser].axis for laser in np.unique(cloud.laser).tolist()}
+    across = np.array([axes[laser] == "x" for laser in cloud.laser.tolist()])
+    stripe = np.where(across[:, None], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0])
+    along = trajectory.transform(stripe, times) - cameras
+    return Sight(rays, along)
+
+
+def _times_of(project: Project, cloud: PointCloud) -> Scalars | None:
+    known = project.load_frame_times()
+    order = np.argsort(known.frame)
+    frames = known.frame[order].astype(np.int64)
+    slot = np.minimum(np.searchsorted(frames, cloud.frame), max(len(frames) - 1, 0))
+    if len(frames) == 0 or np.any(frames[slot] != cloud.frame):
+        return None
+    return known.time[order][slot]
+
+
+def _trace_shifts(
+    project: Project, cloud: PointCloud, rig: Rig
+) -> Callable[[Indices], Float[np.ndarray, "n 3 modes"]]:
+    """Give how points of the cloud move with the rig's errors, in the world.
+
+    A cloud keeps no pixels: those of the nearest point of the profiles stand for them.
+    """
+    profile, trajectory = project.load_profile(), project.load_trajectory()
+    profile = profile[:: max(len(profile) // _MOST_TRACED, 1)]
+    tree = KDTree(trajectory.transform(profile.points, profile.time))
+
+    def shifts(some: Indices) -> Float[np.ndarray, "n 3 modes"]:
+        near = np.asarray(tree.query(cloud.points[some])[1])
+        return _shift(profile[near], trajectory, rig)
+
+    return shifts
+
+
+def _shift(profile: Profile, trajectory: Trajectory, rig: Rig) -> Float[np.ndarray, "n 3 modes"]:
+    shifts = np.zeros((len(profile), 3, 0))
+    for laser in np.unique(profile.laser):
+        mine = profile.laser == laser
+        found = common_shifts(profile.pixels[mine], rig, int(laser))
+        if shifts.shape[2] == 0:
+            shifts = np.zeros((len(profile), 3, found.shape[2]))
+        shifts[mine] = found
+    moments, which = np.unique(profile.time, return_inverse=True)
+    attitudes = Rotation.from_quat(trajectory.at(moments).quaternions, scalar_first=True)
+    world_from_rig = attitudes.as_matrix()
+    if rig.vehicle_from_camera is not None:
+        world_from_rig = world_from_rig @ rig.vehicle_from_camera.rotation.T
+    return world_from_rig[which] @ shifts
+
+
+def _place(point: Vector) -> str:
+    return ",".join(f"{part:.3f}" for part in point)

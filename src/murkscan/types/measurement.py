@@ -1,0 +1,30 @@
+"""What one measurement of a scan gave."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from .quantity import Quantity
+
+
+@dataclass(frozen=True, eq=False)
+class Measurement:
+    """Numbers that belong together, each with its uncertainty."""
+
+    kind: str
+    """What was measured: sphere, distance, section …"""
+    quantities: tuple[Quantity, ...]
+    """The numbers, in the order to show them."""
+    details: Mapping[str, object] = field(default_factory=dict)
+    """What else belongs to it: places and directions in the world [m], counts; plain values whose
+    keys carry their unit."""
+
+    def __getitem__(self, name: str) -> Quantity:
+        """Give a quantity by its name.
+
+        Raises:
+            KeyError: There is none of that name.
+        """
+        for quantity in self.quantities:
+            if quantity.name == name:
+                return quantity
+        raise KeyError(name)
