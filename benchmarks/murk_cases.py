@@ -5,11 +5,15 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from murkscan.capture import AbstractRecording, open_recording
 from murkscan.io.parquet import load_true_stripe
 from murkscan.io.rig_toml import load_rig
 from murkscan.optics.phase_henyey_greenstein import HenyeyGreenstein
 from murkscan.simulate import Body, Scene, load_scene
+from murkscan.simulate.textures import Plain
+from murkscan.simulate.textures.bands import Bands
 from murkscan.simulate.textures.growth import Growth
 from murkscan.survey.simulate import simulate_recording
 from murkscan.types.rig import Rig
@@ -19,7 +23,11 @@ RUNGS = ("c0.3", "c0.5", "c1.5", "c3", "c4", "c5", "c6")
 HD = tuple(f"{rung}-hd" for rung in RUNGS)
 _AMBIENT = 0.01
 """Daylight that raises the wet background of c = 3 /m to some 50 grey levels [W/m²]."""
+_WALL = 1.3
+"""What is farther than this is the wall [m]."""
 _GLOSS = 0.15
+_BANDS = Bands(albedos=(0.03, 0.11), widths=(0.05, 0.05), axis="x")
+"""Paint with sharp edges, which growth has not."""
 _READ_NOISE = 25.0
 _SCATTERED = 0.95
 """Single scattering albedo of other water: half as broad a skirt again as with 0.83."""
@@ -27,6 +35,16 @@ _SCATTERED = 0.95
 
 def _with_gloss(scene: Scene) -> Scene:
     return replace(scene, bodies=tuple(replace(body, gloss=_GLOSS) for body in scene.bodies))
+
+
+def _with_bands(scene: Scene) -> Scene:
+    return replace(
+        scene,
+        bodies=tuple(
+            replace(body, texture=_BANDS) if isinstance(body.texture, Growth) else body
+            for body in scene.bodies
+        ),
+    )
 
 
 def _with_medium(**changed: object) -> Callable[[Scene], Scene]:
@@ -43,6 +61,7 @@ OTHERS: dict[str, Callable[[Scene], Scene]] = {
     "c3-h264": _with_sensor(codec="h264", crf=23),
     "c3-phase": _with_medium(phase=HenyeyGreenstein(0.9)),
     "c3-skirt": _with_medium(single_scattering_albedo=_SCATTERED),
+    "c3-paint": _with_bands,
     "c3-noise": _with_sensor(read_noise=_READ_NOISE),
 }
 """Cases at c = 3 /m beside the ladder, and what is changed for each."""
@@ -76,6 +95,16 @@ class Part:
             sensor=replace(scene.sensor, codec="ffv1"),
         )
         return OTHERS.get(self.case, lambda same: same)(scene)
+
+    def paint(self, truth: TrueStripe) -> np.ndarray:
+        """Give the albedo of true centres on the hull; NaN on the wall, which is even."""
+        scene = self.scene()
+        albedo, on_hull = np.full(len(truth), np.nan), truth.points[:, 2] < _WALL
+        for body in scene.bodies:
+            if not isinstance(body.texture, Plain):
+                points = body.world_from_object.inverse() @ truth.points[on_hull]
+                albedo[on_hull] = body.texture.albedo(points)
+        return albedo
 
     def recorded(self, cache: Path) -> "Recorded":
         """Give the recording, drawn if the cache does not hold it whole."""

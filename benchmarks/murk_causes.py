@@ -8,11 +8,11 @@ _NEAR = 3
 _STEP = 2.0
 """Step from one scan line to the next that is a jump [px]."""
 _PAINT = 0.12
-"""Change of the logarithm of the stripe's height from line to line that is an edge of paint."""
+"""Change of the albedo's logarithm from line to line that is an edge of paint."""
 _DISPLACED = 4.0
 """Distance from a true centre up to which a false one is that one, displaced [px]."""
 MISSED = ("jump", "paint", "bound 0.3–0.5", "bound 0.1–0.3", "bound ≤ 0.1")
-FALSE = ("displaced at a jump", "displaced", "second line", "elsewhere")
+FALSE = ("displaced at a jump", "displaced", "second line", "before the surface", "elsewhere")
 
 
 def count_causes(matched: Matched) -> dict[str, dict[str, int]]:
@@ -26,7 +26,9 @@ def count_causes(matched: Matched) -> dict[str, dict[str, int]]:
     second, _ = nearest_in_line(line, rows, truth, np.flatnonzero(truth.is_reflected))
     displaced = away <= _DISPLACED
     at_jump = displaced & jump[nearest] if len(jump) else displaced
-    excuses = (at_jump, displaced, second <= REACH, np.ones(len(away), bool))
+    # The laser sits above: what the sheet lights before the surface is above it in the picture.
+    before = np.isfinite(away) & (rows < truth.pixels[nearest, 1]) if len(jump) else displaced
+    excuses = (at_jump, displaced, second <= REACH, before, np.ones(len(away), bool))
     return {
         "missed": _first_that_fits(missed, MISSED, causes),
         "false": _first_that_fits(~matched.is_right, FALSE, excuses),
@@ -47,7 +49,7 @@ def edges_of(matched: Matched) -> tuple[np.ndarray, np.ndarray]:
     """Tell which true centres are near a jump or an end of the stripe, and at an edge of paint."""
     truth = matched.truth
     rows, columns = truth.pixels[:, 1], np.rint(truth.pixels[:, 0]).astype(int)
-    light = np.log(np.maximum(truth.signal, 1e-9))
+    light = np.log(matched.albedo)
     everywhere = np.arange(len(truth))
     jump, paint = np.zeros((2, len(truth)), bool)
     for shift in (-1, 1):
@@ -61,7 +63,7 @@ def edges_of(matched: Matched) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _reached(follows: np.ndarray, at_border: np.ndarray) -> np.ndarray:
-    """Tell from which centres an end is reached within a few steps; the picture's border is none."""
+    """Tell from which centres an end is reached in a few steps; the picture's border is none."""
     ends = (follows < 0) & ~at_border
     near = ends.copy()
     at = np.arange(len(follows))

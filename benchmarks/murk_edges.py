@@ -15,14 +15,16 @@ _SLACK = 1.5
 """What lies further than this beyond either side is false, and no answer to the jump [px]."""
 OFFSETS = np.arange(-SIDE, SIDE + _GAP + 1)
 """Scan lines from the last one before the jump."""
-_WINDOW = 10
-"""Scan lines on each side whose mean is taken off, so that edges stand out of what is broad."""
-_BLURS = np.arange(0.0, 6.01, 0.1)
-"""Blurs along the stripe that are tried, 1σ [scan lines]."""
-_TO_WIDTH = 2.563
-"""10 to 90 % width of an edge that is blurred by a Gaussian, in its standard deviations."""
+AROUND = np.arange(-9, 11)
+"""Scan lines from the last one before a step of paint."""
+_PLATEAU = 4
+"""How many of them, at both ends, show what is on either side."""
+_STEP = 0.7
+"""Change of the albedo's logarithm from one scan line to the next that is a step."""
+_EVEN = 0.02
+"""The same up to which paint is even."""
 _STRONG = 0.08
-"""Change of the logarithm of the stripe's height from line to line that counts as strong."""
+"""Change of the albedo's logarithm from line to line, or frame to frame, that is strong."""
 
 
 def answer_to_jumps(matched: Matched) -> tuple[np.ndarray, np.ndarray]:
@@ -71,12 +73,12 @@ def _jumps(matched: Matched) -> list[tuple[int, np.ndarray, np.ndarray]]:
     return kept
 
 
-def rise_of(total: np.ndarray, count: np.ndarray) -> float:
+def rise_of(total: np.ndarray, count: np.ndarray, offsets: np.ndarray = OFFSETS) -> float:
     """Give the 10 to 90 % width of the mean answer [scan lines]; lines without any prolong it."""
     known = count > 0.1 * count.max(initial=0)
     if known.sum() < SIDE:
         return float("nan")
-    at, mean = OFFSETS[known].astype(float), total[known] / count[known]
+    at, mean = offsets[known].astype(float), total[known] / count[known]
     mean = (mean - mean[:3].mean()) / (mean[-3:].mean() - mean[:3].mean())
     up, down = np.flatnonzero(mean > 0.1), np.flatnonzero(mean < 0.9)
     if len(up) == 0 or len(down) == 0 or up[0] == 0 or down[-1] == len(at) - 1:
@@ -86,59 +88,60 @@ def rise_of(total: np.ndarray, count: np.ndarray) -> float:
     return float(last - first)
 
 
-def blur_of_paint(matched: Matched) -> np.ndarray:
-    """Correlate the found height of the stripe with the true one, blurred ever more along it.
+def answer_to_paint(matched: Matched) -> np.ndarray:
+    """Add up how the height of the stripe goes over steps of paint on a smooth surface.
+
+    Each height is put between its means on both sides: 0 is on the one, 1 on the other.
 
     Returns:
-        One sum of products for each of `_BLURS`, with those of both squares: 3 rows.
+        At each of `AROUND` the sum and the number of the answers of the finder, and those of the
+        picture itself: 4 rows.
     """
-    heights, true = _heights(matched)
-    known = np.isfinite(heights) & np.isfinite(true)
-    sums = np.zeros((3, len(_BLURS)))
-    if known.sum() < 1000:
-        return sums
-    found = _stand_out(np.where(known, heights, 0.0), known)
-    reach = np.arange(-15, 16)
-    for k, blur in enumerate(_BLURS):
-        kernel = np.exp(-0.5 * (reach / max(blur, 1e-3)) ** 2)
-        blurred = _spread(np.where(known, true, 0.0), kernel) / np.maximum(
-            _spread(known.astype(float), kernel), 1e-9
-        )
-        wanted = _stand_out(np.where(known, blurred, 0.0), known)
-        sums[:, k] = (found * wanted).sum(), (found**2).sum(), (wanted**2).sum()
-    return sums
-
-
-def width_of_paint(sums: np.ndarray) -> float:
-    """Give the 10 to 90 % width of an edge of paint, beyond that of the picture [scan lines]."""
-    with np.errstate(invalid="ignore", divide="ignore"):
-        alike = sums[0] / np.sqrt(sums[1] * sums[2])
-    return float("nan") if np.isnan(alike).all() else _TO_WIDTH * _BLURS[np.nanargmax(alike)]
-
-
-def _heights(matched: Matched) -> tuple[np.ndarray, np.ndarray]:
-    """Give height found and true height by frame and scan line, where both are, and clearly."""
-    truth, which = matched.truth, np.flatnonzero(matched.is_hit & (matched.truth.crlb <= 0.3))
-    frames, columns = (
-        int(truth.frame.max(initial=0)) + 1,
-        int(truth.pixels[:, 0].max(initial=0)) + 1,
+    first = ~matched.truth.is_reflected & (matched.truth.branch == 0)
+    hit = first & matched.is_hit
+    heights = matched.found.signal[matched.found_of_truth] if len(matched.found) else hit
+    found = _as_grid(matched, heights.astype(float), hit)
+    true = _as_grid(matched, matched.truth.signal, first & matched.is_visible)
+    row, light = (
+        _as_grid(matched, one, first)
+        for one in (matched.truth.pixels[:, 1], np.log(matched.albedo))
     )
-    found, true = np.full((2, frames, columns), np.nan)
-    at = truth.frame[which], np.rint(truth.pixels[which, 0]).astype(int)
-    found[at], true[at] = matched.found.signal[matched.found_of_truth[which]], truth.signal[which]
-    return found, true
+    answers = np.zeros((4, len(AROUND)))
+    for frame, line in np.argwhere(np.abs(np.diff(light, axis=1)) > _STEP).tolist():
+        at = line + AROUND
+        if at[0] < 0 or at[-1] >= row.shape[1]:
+            continue
+        changes = np.abs(np.diff(light[frame, at]))
+        if np.nansum(changes > _EVEN) == 1 and (np.abs(np.diff(row[frame, at])) < _SMOOTH).all():
+            answers[:2] += _gone(found[frame, at])
+            answers[2:] += _gone(true[frame, at])
+    return answers
 
 
-def _stand_out(values: np.ndarray, known: np.ndarray) -> np.ndarray:
-    box = np.ones(2 * _WINDOW + 1)
-    mean = _spread(np.where(known, values, 0.0), box) / np.maximum(
-        _spread(known.astype(float), box), 1e-9
-    )
-    return np.where(known, values - mean, 0.0)
+def _gone(heights: np.ndarray) -> np.ndarray:
+    """Give the answer to one step, where the heights on both sides are known, and whether it is."""
+    sides = heights[:_PLATEAU], heights[-_PLATEAU:]
+    if not np.isfinite(sides).all():
+        return np.zeros((2, len(heights)))
+    start, end = np.mean(sides, axis=1)
+    gone = (heights - start) / (end - start)
+    return np.stack([np.nan_to_num(gone), np.isfinite(gone)])
 
 
-def _spread(rows: np.ndarray, kernel: np.ndarray) -> np.ndarray:
-    return np.apply_along_axis(np.convolve, 1, rows, kernel, "same")
+def width_of_paint(answers: np.ndarray) -> tuple[float, float]:
+    """Give the 10 to 90 % width of a step of paint in what is found, and in the picture."""
+    found, picture = (rise_of(*answers[k : k + 2], AROUND) for k in (0, 2))
+    return found, picture
+
+
+def _as_grid(matched: Matched, values: np.ndarray, which: np.ndarray) -> np.ndarray:
+    """Give values of some true centres by frame and scan line; NaN where there is none."""
+    truth = matched.truth
+    columns = np.rint(truth.pixels[:, 0]).astype(int)
+    size = int(truth.frame.max(initial=0)) + 1, int(columns.max(initial=0)) + 1
+    grid = np.full(size, np.nan)
+    grid[truth.frame[which], columns[which]] = values[which]
+    return grid
 
 
 def pull_of_paint(matched: Matched) -> dict[str, float]:
@@ -148,27 +151,19 @@ def pull_of_paint(matched: Matched) -> dict[str, float]:
     is aslant; across it, the brighter side of the sheet weighs more (Curless and Levoy 1995).
     """
     truth = matched.truth
-    frames, columns = (
-        int(truth.frame.max(initial=0)) + 1,
-        int(truth.pixels[:, 0].max(initial=0)) + 1,
+    first = ~truth.is_reflected & (truth.branch == 0)
+    row, light, error = (
+        _as_grid(matched, one, first)
+        for one in (truth.pixels[:, 1], np.log(matched.albedo), matched.error)
     )
-    row, light, error = np.full((3, frames, columns), np.nan)
-    which = np.flatnonzero(~truth.is_reflected & (truth.branch == 0))
-    at = truth.frame[which], np.rint(truth.pixels[which, 0]).astype(int)
-    row[at], light[at] = truth.pixels[which, 1], np.log(np.maximum(truth.signal[which], 1e-9))
-    error[at] = np.where(truth.crlb[which] <= 0.3, matched.error[which], np.nan)
+    sure = _as_grid(matched, truth.crlb, first) <= 0.3
     slope, along = np.gradient(row, axis=1), np.gradient(light, axis=1)
-    smooth = np.abs(slope) < _SMOOTH
+    across = np.gradient(light, axis=0) if len(light) > 1 else np.full(light.shape, np.nan)
+    sure &= np.abs(slope) < _SMOOTH
     return {
-        "along": _median(error * np.sign(slope * along), (np.abs(along) > _STRONG) & smooth),
-        "across": _median(*_towards(error, np.gradient(light, axis=0), smooth)),
+        "along": _median(error * np.sign(slope * along), sure & (np.abs(along) > _STRONG)),
+        "across": _median(error * np.sign(across), sure & (np.abs(across) > _STRONG)),
     }
-
-
-def _towards(
-    error: np.ndarray, change: np.ndarray, smooth: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    return error * np.sign(change), (np.abs(change) > _STRONG) & smooth
 
 
 def _median(values: np.ndarray, where: np.ndarray) -> float:

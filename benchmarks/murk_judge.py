@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 from murk_causes import count_causes
-from murk_edges import answer_to_jumps, blur_of_paint, pull_of_paint, rise_of, width_of_paint
+from murk_edges import answer_to_jumps, answer_to_paint, pull_of_paint, rise_of, width_of_paint
 from murk_match import VISIBLE, Matched
 
 BOUNDS = (0.1, 0.3, VISIBLE)
@@ -31,7 +31,7 @@ def judge(matched: Matched) -> dict[str, Any]:
     sure = seen & hit & (crlb <= _SURE)
     known = np.flatnonzero(seen & hit)
     sigma = matched.found.sigma[matched.found_of_truth[known]]
-    jumps, paint = answer_to_jumps(matched), blur_of_paint(matched)
+    jumps, paint = answer_to_jumps(matched), answer_to_paint(matched)
     return {
         "visible": [int((seen & one).sum()) for one in within],
         "hit": [int((seen & hit & one).sum()) for one in within],
@@ -66,7 +66,7 @@ def _median(values: np.ndarray) -> float:
 
 
 def pool(parts: list[dict[str, Any]]) -> dict[str, float]:
-    """Give the figures of one finder in one case: counts of all seeds together, means of medians."""
+    """Give one finder's figures in one case: counts of all seeds together, means of medians."""
     visible, hit = _sum(parts, "visible"), _sum(parts, "hit")
     inside, known = _sum(parts, "within")
     figures = {"recall": _share(hit.sum(), visible.sum())}
@@ -78,7 +78,7 @@ def pool(parts: list[dict[str, Any]]) -> dict[str, float]:
     figures["within sigma"] = _share(inside, known)
     figures["calibration"] = _worst_bin(_sum(parts, "posterior"))
     figures["jump"] = rise_of(*_sum(parts, "jump"))
-    figures["paint"] = width_of_paint(_sum(parts, "paint"))
+    figures["paint"], figures["paint itself"] = width_of_paint(_sum(parts, "paint"))
     for way in ("along", "across"):
         figures[f"pull {way}"] = _mean([part["pull"][way] for part in parts])
     return figures

@@ -1,6 +1,6 @@
 """Which found centre is which true one."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -21,6 +21,8 @@ class Matched:
 
     found: Stripe
     truth: TrueStripe
+    albedo: np.ndarray
+    """Of each true centre; NaN where it is even all around."""
     truth_of_found: np.ndarray
     """Number of the true centre that each found one is; -1: it is none."""
     found_of_truth: np.ndarray
@@ -56,7 +58,13 @@ def scan_line(frame: np.ndarray, pixels: np.ndarray) -> np.ndarray:
     return frame.astype(np.int64) * _WIDEST + np.rint(pixels[:, 0]).astype(np.int64)
 
 
-def match_stripes(found: Stripe, truth: TrueStripe) -> Matched:
+def pick_frames(truth: TrueStripe, frames: list[int]) -> TrueStripe:
+    """Give the true centres of some frames."""
+    kept = np.isin(truth.frame, frames)
+    return TrueStripe(*(getattr(truth, column.name)[kept] for column in fields(truth)))
+
+
+def match_stripes(found: Stripe, truth: TrueStripe, albedo: np.ndarray) -> Matched:
     """Pair each found centre with the true one nearest to it, one to one, nearest pairs first.
 
     Only centres of the line itself can be paired: where gloss throws a second line, a point there
@@ -67,7 +75,7 @@ def match_stripes(found: Stripe, truth: TrueStripe) -> Matched:
     for i in np.argsort(away, kind="stable"):
         if of_found[a[i]] < 0 and of_truth[b[i]] < 0:
             of_found[a[i]], of_truth[b[i]] = b[i], a[i]
-    return Matched(found, truth, of_found, of_truth)
+    return Matched(found, truth, albedo, of_found, of_truth)
 
 
 def _pairs(found: Stripe, truth: TrueStripe) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
