@@ -1,4 +1,4 @@
-"""Weak centres, joined with their neighbours over scan lines and frames to a bent surface."""
+"""Centres, joined with their neighbours over scan lines and frames to a bent surface."""
 
 import numpy as np
 from numba import njit
@@ -13,21 +13,18 @@ _TURNS = 3
 @njit(cache=True, nogil=True)
 def join_centres(
     lines: np.ndarray, times: np.ndarray, centres: np.ndarray, sigma: np.ndarray,
-    starts: np.ndarray, first: int, last: int, reach: float, rough: float, weak: float,
+    starts: np.ndarray, first: int, last: int, reach: float, rough: float,
 ) -> np.ndarray:  # fmt: skip
     """Give centres first … last and their standard deviations, joined with those around (n 2).
 
     All are sorted by frame, then by line; frame f has the centres starts[f] … starts[f + 1].
     Lines and times are counted in lines and frames. Neighbours lie up to `reach` lines away, in all
     frames given. A neighbour counts less with its own variance, with its distance, since surfaces
-    are rough (`rough` [px]), and with the misfit of all beyond their noise. Centres surer than
-    `weak` stay as they are.
+    are rough (`rough` [px]), and with the misfit of all beyond their noise.
     """
     joined = np.empty((last - first, 2))
     for i in range(first, last):
-        joined[i - first, 0], joined[i - first, 1] = centres[i], sigma[i]
-        if sigma[i] >= weak:
-            joined[i - first] = _join_one(i, lines, times, centres, sigma, starts, reach, rough)
+        joined[i - first] = _join_one(i, lines, times, centres, sigma, starts, reach, rough)
     return joined
 
 
@@ -77,11 +74,4 @@ def _join_one(
         variance = first_variance(matrix)
         if turn == 1:
             excess = max(misfits / max(weights, 1.0), 0.0)
-    return _outcome(centres[i] + p[0], variance + 0.6 * (rough * rough + excess), sigma[i], excess)
-
-
-@njit(cache=True, nogil=True)
-def _outcome(centre: float, variance: float, before: float, excess: float) -> tuple[float, float]:
-    """Never be less sure for having neighbours that fit."""
-    joined = np.sqrt(variance)
-    return centre, min(joined, before) if excess == 0.0 else joined
+    return centres[i] + p[0], np.sqrt(variance)

@@ -14,29 +14,76 @@ _FEWEST = 6
 
 
 @njit(cache=True, nogil=True)
-def fit_stripes(
+def spread_skirts(
     levels: np.ndarray, lines: np.ndarray, starts: np.ndarray, half: int,
+    along: float, across: float,
+) -> np.ndarray:  # fmt: skip
+    """Give the skirt in each start's window, from the light of all starts around (n size).
+
+    Each sends a share of its light over a Gaussian of 1σ `along` its scan line [px] and `across`
+    them [lines]; that of an even, straight stripe has a height of 1. Lines do not decrease.
+    """
+    size = 2 * half + 1
+    skirts = np.zeros((len(lines), size))
+    heights = np.empty(len(lines))
+    for i in range(len(lines)):
+        heights[i] = _rise(levels, lines[i], int(np.rint(starts[i])), half)
+    reach = int(np.ceil(3.0 * across))
+    weights = np.exp(-0.5 * (np.arange(reach + 1) / across) ** 2)
+    weights /= 2.0 * weights.sum() - weights[0]
+    first = 0
+    for i in range(len(lines)):
+        middle = int(np.rint(starts[i]))
+        while lines[first] < lines[i] - reach:
+            first += 1
+        for j in range(first, len(lines)):
+            if lines[j] > lines[i] + reach:
+                break
+            share = weights[abs(lines[j] - lines[i])] * heights[j] / heights[i]
+            for k in range(size):
+                x = (middle + k - half - starts[j]) / along
+                if x * x < 16.0:
+                    skirts[i, k] += share * np.exp(-0.5 * x * x)
+    return skirts
+
+
+@njit(cache=True, nogil=True)
+def _rise(levels: np.ndarray, line: int, middle: int, half: int) -> float:
+    """Give how far a stripe's middle rises above its window's ends; at least one level."""
+    last = len(levels) - 1
+    top = 0.0
+    for v in range(max(middle - 1, 0), min(middle + 1, last) + 1):
+        top = max(top, float(levels[v, line]))
+    low, high = max(middle - half, 0), min(middle + half, last)
+    return max(top - 0.5 * (float(levels[low, line]) + float(levels[high, line])), 1.0)
+
+
+@njit(cache=True, nogil=True)
+def fit_stripes(
+    levels: np.ndarray, lines: np.ndarray, starts: np.ndarray, skirts: np.ndarray,
     noise: np.ndarray, shape: np.ndarray,
 ) -> np.ndarray:  # fmt: skip
     """Fit a stripe to each start, by Gauss and Newton's method with weights 1 / variance.
 
     `noise` holds the variance's fixed part, its part per level, its least, and the level of white;
-    `shape` the core's width [px] and its prior's spread (of the logarithm), the skirt's width as a
-    multiple of it, the skirt's share of the height and its prior's spread.
+    `shape` the core's width [px] and its prior's spread (of the logarithm), the skirt's share of
+    the height and its prior's spread; `skirts` its profile in each window.
     Gives centre, its standard deviation, height, core's width, skirt's share, and the mean square
     of the weighted residuals (n 6); NaN where none fits.
     """
     found = np.full((len(lines), 6), np.nan)
     p, step = np.empty(_SIZE), np.empty(_SIZE)
     matrix = np.empty((_SIZE, _SIZE))
+    half = skirts.shape[1] // 2
     for i in range(len(lines)):
         middle = int(np.rint(starts[i]))
         low, high = max(middle - half, 0), min(middle + half, len(levels) - 1)
         scan = levels[low : high + 1, lines[i]]
+        skirt = skirts[i, low - middle + half : high - middle + half + 1]
         _begin(scan, middle - low, starts[i] - middle, shape, p)
         misfit, variance = 0.0, -1.0
         for turn in range(_MOST_STEPS):
-            misfit = _normal_equations(scan, middle - low, p, noise, shape, matrix, step)
+            misfit = _normal_equations(scan, skirt, middle - low, p, noise, shape, matrix, step)
             if misfit < 0.0 or not solve(matrix, step):
                 variance = -1.0
                 break
@@ -61,7 +108,7 @@ def _begin(scan: np.ndarray, middle: int, off: float, shape: np.ndarray, p: np.n
     for v in range(max(middle - 1, 0), min(middle + 2, n)):
         top = max(top, float(scan[v]))
     base = left + slope * (middle - 0.5)
-    p[0], p[1], p[2], p[3] = off, max(top - base, 1.0), np.log(shape[0]), shape[3]
+    p[0], p[1], p[2], p[3] = off, max(top - base, 1.0), np.log(shape[0]), shape[2]
     p[4], p[5], p[6] = base, slope, 0.0
 
 
@@ -77,8 +124,8 @@ def _take_step(p: np.ndarray, step: np.ndarray) -> None:
 
 @njit(cache=True, nogil=True)
 def _normal_equations(
-    scan: np.ndarray, middle: int, p: np.ndarray, noise: np.ndarray, shape: np.ndarray,
-    matrix: np.ndarray, right: np.ndarray,
+    scan: np.ndarray, skirt: np.ndarray, middle: int, p: np.ndarray, noise: np.ndarray,
+    shape: np.ndarray, matrix: np.ndarray, right: np.ndarray,
 ) -> float:  # fmt: skip
     """Fill the normal equations at p, with the priors; white pixels are left out.
 
@@ -88,20 +135,18 @@ def _normal_equations(
     right[:] = 0.0
     slopes = np.empty(_SIZE)
     width = np.exp(p[2])
-    skirt = width * shape[2]
     total, count = 0.0, 0
     for v in range(len(scan)):
         level = float(scan[v])
         if level >= noise[3]:
             continue
         along = float(v - middle)
-        x = along - p[0]
-        core, broad = np.exp(-0.5 * (x / width) ** 2), np.exp(-0.5 * (x / skirt) ** 2)
-        inner, outer = core / (width * width), p[3] * broad / (skirt * skirt)
-        slopes[0] = p[1] * x * (inner + outer)
-        slopes[1] = core + p[3] * broad
-        slopes[2] = p[1] * x * x * (inner + outer)
-        slopes[3] = p[1] * broad
+        x = (along - p[0]) / width
+        core = np.exp(-0.5 * x * x)
+        slopes[0] = p[1] * core * x / width
+        slopes[1] = core + p[3] * skirt[v]
+        slopes[2] = p[1] * core * x * x
+        slopes[3] = p[1] * skirt[v]
         slopes[4], slopes[5], slopes[6] = 1.0, along, along * along
         model = p[1] * slopes[1] + p[4] + p[5] * along + p[6] * slopes[6]
         weight = 1.0 / max(noise[0] + noise[1] * min(max(model, 0.0), noise[3]), noise[2])
@@ -125,7 +170,7 @@ def _add_priors(p: np.ndarray, shape: np.ndarray, matrix: np.ndarray, right: np.
     curvature = 0.0025 * abs(p[1]) / shape[0] ** 2 + 1e-3
     for k, off, spread in (
         (2, np.log(shape[0]) - p[2], shape[1]),
-        (3, shape[3] - p[3], shape[4]),
+        (3, shape[2] - p[3], shape[3]),
         (6, -p[6], curvature),
     ):
         matrix[k, k] += 1.0 / spread**2

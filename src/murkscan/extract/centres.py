@@ -9,7 +9,7 @@ from jaxtyping import Float
 from scipy.special import erf
 
 from .._kernels.join_centres import join_centres
-from .._kernels.stripe_fit import fit_stripes
+from .._kernels.stripe_fit import fit_stripes, spread_skirts
 from ..types.arrays import Indices, Mask, Scalars
 from ..types.background import Noise, StripeShape
 from .ridges import Ridges
@@ -19,11 +19,10 @@ SKIRT = 2.5
 """Width of the skirt near the core, as a multiple of the core's."""
 _WIDTH_SPREAD, _SKIRT_SPREAD = 0.15, 0.1
 """Spreads of the priors on a stripe's width (of its logarithm) and on its skirt's share."""
-_REACH, _WEAK = 8.0, 2.0
-"""Scan lines over which weak centres are joined; roughnesses of the surface from which one is."""
-_ROUGH = (0.04, 1.0)
-"""Least and largest roughness of a surface from scan line to scan line [px]; within them it is four
-times what sure centres scatter."""
+_REACH = 8.0
+"""Scan lines over which centres are joined."""
+_ROUGH = 0.06
+"""Roughness of a surface from scan line to scan line, as far as nothing shows more [px]."""
 _RIGHT = 1.5
 """Pixels within which a centre is the surface's, and not something beside it."""
 
@@ -93,8 +92,11 @@ def fit_ridges(
     """
     half = max(6, math.ceil(5 * shape.width) + 3)
     law = np.array([noise.fixed, noise.gain, noise.least, noise.white])
-    look = np.array([shape.width, tightness.width, SKIRT, shape.skirt, tightness.skirt])
-    return fit_stripes(lines.levels, scan_lines, positions, half, law, look)
+    look = np.array([shape.width, tightness.width, shape.skirt, tightness.skirt])
+    along = SKIRT * shape.width
+    across = along * lines.stretch / lines.line_step
+    skirts = spread_skirts(lines.levels, scan_lines, positions, half, along, across)
+    return fit_stripes(lines.levels, scan_lines, positions, skirts, law, look)
 
 
 def find_centres(
@@ -118,32 +120,32 @@ def find_centres(
     return centres[fits]
 
 
-def join_weak(near: Mapping[int, Centres], *, shape: StripeShape) -> Centres:
-    """Join a frame's weak centres with those around them, in scan lines and in frames.
+def join_frames(near: Mapping[int, Centres]) -> Centres:
+    """Join a frame's centres with those around them, in scan lines and in frames.
 
-    Where the noise of one centre exceeds the roughness of a surface, its neighbours know more of
-    where it is: a parabola over scan lines that moves evenly over frames is put through them.
+    A parabola over scan lines that moves evenly over frames is put through the neighbours of each
+    centre. They count as far as surfaces are smooth: less with distance, and with their misfit.
 
     Args:
         near: Centres of the frame, 0, and of those around it.
-        shape: The stripe's shape, which tells how rough surfaces are.
     """
     own = near[0]
-    groups = [near[distance] for distance in sorted(near)]
+    if len(own) == 0:
+        return own
+    distances = sorted(near)
+    groups = [near[distance] for distance in distances]
     starts = np.cumsum([0] + [len(group) for group in groups])
-    first = starts[sorted(near).index(0)]
-    rough = own.lines.stretch * float(np.clip(4 * shape.floor, *_ROUGH))
+    first = starts[distances.index(0)]
     joined = join_centres(
         np.concatenate([group.scan_line + own.lines.offset(group.lines)[1] for group in groups]),
-        np.concatenate([np.full(len(near[d]), float(d)) for d in sorted(near)]),
+        np.repeat(np.array(distances, float), np.diff(starts)),
         np.concatenate([group.position for group in groups]),
         np.concatenate([group.sigma for group in groups]),
         starts,
         first,
         first + len(own),
         _REACH,
-        rough,
-        _WEAK * rough,
+        _ROUGH,
     )
     return replace(own, position=joined[:, 0], sigma=joined[:, 1])
 

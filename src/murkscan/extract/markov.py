@@ -2,14 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Float
 
 from .._kernels.chain import follow_chain
 from ..errors import InputError
-from .ridges import Ridges
+from .branches import go_on_beside
+from .ridges import Ridges, find_runs
 
 _STEPS = np.array([0.25, 1.2, 0.80, 0.19, 0.35])
 """Scales of a surface's small and larger steps [px a line], their shares, and the scale of steps in
@@ -24,12 +24,12 @@ _FAINT, _FULL = 4.5, (2.5, 5.5)
 """Score below which noise hides a ridge, and scores over which its absence comes to count."""
 _PERSISTENT = (0.3, 0.6)
 """Share of sure ridges that the next frame has, too, over which frames come to count at all."""
-_LONG, _STEADY = 24, 3.0
-"""Lines, and the step that parts them [px], from which a stripe needs no other frame."""
+_MANY = 24
+"""Scan lines that other frames speak against, from which a stripe may be new as a whole."""
 _END = -8.0
 """Logarithm of the likelihood ratio of a stripe's blur beyond its end."""
-_CLEAR, _SHORT = 5.0, 8
-"""Score of ridges, and lines that have one, from which a second branch is looked for."""
+_CLEAR = 4.0
+"""Score of a ridge from which it may be a second branch."""
 
 Posterior = Float[np.ndarray, "lines most"]
 Evidence = Float[np.ndarray, "lines most"]
@@ -67,10 +67,12 @@ class Markov:
         other = 0.0 if said is None else np.minimum(said, 20.0)
         ratio = np.where(ridges.exist, np.exp(other) / (noise + 0.25 * self.clutter), 0.0)
         first = self._chain(ridges, ratio)
-        free = ridges.exist & ~ridges.are_within(first > 0.5, float(ridges.reach))
-        if (free & (ridges.heights > _CLEAR)).any(axis=1).sum() < _SHORT:
+        clear = ridges.exist & (ridges.heights > _CLEAR)
+        free = clear & ~ridges.are_within(first > 0.5, float(ridges.reach))
+        if not free.any():
             return first
-        return np.where(free, self._chain(ridges, np.where(free, ratio, 0.0)), first)
+        second = self._chain(ridges, np.where(free, ratio, 0.0))
+        return np.where(go_on_beside(ridges, first, second), second, first)
 
     def _chain(self, ridges: Ridges, ratio: Evidence) -> Posterior:
         length = len(ridges.lines.levels)
@@ -112,14 +114,10 @@ def _persistence(near: Mapping[int, Ridges]) -> float:
 def _spare_long(ridges: Ridges, said: Evidence, markov: Markov) -> None:
     """Let a surface that is new as a whole be: a long stripe needs no other frame."""
     against = (said < -3.0) & (ridges.heights > 6.0) & ridges.exist
-    if against.any(axis=1).sum() <= _LONG:
+    if against.any(axis=1).sum() <= _MANY:
         return
     posterior = markov.follow(ridges)
     best, every = np.argmax(posterior, axis=1), np.arange(len(said))
     on = (posterior[every, best] > 0.5) & (ridges.heights[every, best] > 5.0)
-    step = np.abs(np.diff(ridges.positions[every, best])) > _STEADY
-    ends = np.flatnonzero(np.r_[True, ~on[1:] | ~on[:-1] | step, True])
-    for first, last in pairwise(ends):
-        if last - first >= _LONG and on[first]:
-            run = every[first:last]
-            said[run, best[run]] = np.maximum(said[run, best[run]], 0.0)
+    run = np.flatnonzero(find_runs(on, ridges.positions[every, best]))
+    said[run, best[run]] = np.maximum(said[run, best[run]], 0.0)

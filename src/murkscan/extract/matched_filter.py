@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Float32
 
 from .._kernels.matched_filter import score_pixels
+from ..types.arrays import Ratios
 from ..types.background import Noise
 from .scan_lines import ScanLines
 
@@ -18,7 +19,7 @@ class MatchedFilter:
     width: float
     """1σ of the ridge [px]."""
     noise: Noise
-    template: Float32[np.ndarray, "_"]
+    template: Ratios
 
     @classmethod
     def of(cls, width: float, noise: Noise) -> "MatchedFilter":

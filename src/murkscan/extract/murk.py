@@ -17,7 +17,7 @@ from ..types.rig import Rig
 from ..types.stripe import Stripe
 from .assemble import assemble_stripe
 from .base import AbstractExtractor
-from .centres import Centres, doubt_wide, find_centres, join_weak
+from .centres import Centres, doubt_wide, find_centres, join_frames
 from .markov import Markov, ask_frames
 from .matched_filter import MatchedFilter
 from .neighbours import with_neighbours
@@ -78,7 +78,7 @@ class Murk(AbstractExtractor):
         axis = rig.laser(laser).axis
         centres = self._centres(frames, axis, levels, shape)
         for near in with_neighbours(centres, 2):
-            joined = doubt_wide(join_weak(near, shape=shape))
+            joined = doubt_wide(join_frames(near))
             yield _as_stripe(joined[joined.posterior >= self.min_posterior], laser)
 
     def _centres(

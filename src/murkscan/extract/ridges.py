@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float
 
 from .._kernels.matched_filter import add_neighbour
 from .._kernels.ridges import compare_ridges, find_blurred_ends, find_ridges
-from ..types.arrays import Indices
+from ..types.arrays import Indices, Mask, Scalars
 from .matched_filter import Scored
 from .scan_lines import ScanLines
 
@@ -24,6 +24,10 @@ _LOBE = 0.35
 """Share of a ridge's height that its own side lobes reach, with noise on them."""
 _SURE = 8.0
 """Score from which a ridge is surely there, whatever it is."""
+_LONG, _STEADY = 24, 3.0
+"""Lines, and the step that parts them [px], from which ridges are no snow."""
+_MUCH = 0.1
+"""Share of the scan lines that long stripes must cover to tell anything."""
 
 Marks = Bool[np.ndarray, "lines most"]
 
@@ -71,11 +75,24 @@ class Ridges:
         return (apart < distance).any(axis=2)
 
     def agreement(self, other: "Ridges") -> float:
-        """Give the share of sure ridges that another frame has, too; NaN where few are sure."""
+        """Give the share of long, sure stripes that another frame has, too; NaN where few are."""
         sure = self.exist[:, 0] & (self.heights[:, 0] > _SURE)
-        if sure.mean() < 0.25:
+        long = find_runs(sure, self.positions[:, 0])
+        if long.mean() < _MUCH:
             return math.nan
-        return float(self.are_also_in(other, near=1.5)[sure, 0].mean())
+        return float(self.are_also_in(other, near=1.5)[long, 0].mean())
+
+
+def find_runs(on: Mask, positions: Scalars) -> Mask:
+    """Tell which scan lines lie in a long run of ridges that follow one another steadily.
+
+    Args:
+        on: Scan lines that have a ridge.
+        positions: Where it is [px].
+    """
+    breaks = ~on[1:] | ~on[:-1] | (np.abs(np.diff(positions)) > _STEADY)
+    ends = np.flatnonzero(np.r_[True, breaks, True])
+    return on & np.repeat(np.diff(ends) >= _LONG, np.diff(ends))
 
 
 def find_frame_ridges(near: Mapping[int, Scored], *, least: float, reach: int) -> Ridges:

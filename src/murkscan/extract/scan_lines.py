@@ -54,6 +54,11 @@ class ScanLines:
         """Full-frame pixels in one of these, along a scan line."""
         return self.binning * (self.frame.row_step if self.axis == "y" else 1)
 
+    @property
+    def line_step(self) -> int:
+        """Full-frame pixels from one scan line to the next."""
+        return 1 if self.axis == "y" else self.frame.row_step
+
     def offset(self, other: "ScanLines") -> tuple[float, float]:
         """Give what must be added to another's (position, line) to be this one's.
 

@@ -183,13 +183,13 @@ def _half_widths(levels: Shaped[np.ndarray, "h w"], lines: Indices, middle: Indi
 
 
 def _half_crossing(side: Float[np.ndarray, "n reach"]) -> Scalars:
-    """Give the distance at which each row first sinks below a half; NaN where it does not."""
+    """Give the distance at which each row, above a half at first, sinks below; else NaN."""
     below = side < 0.5
-    first = np.maximum(np.argmax(below, axis=1), 1)
+    first = np.argmax(below, axis=1)
     every = np.arange(len(side))
     above, under = side[every, first - 1], side[every, first]
     crossing = first - 1 + (above - 0.5) / np.maximum(above - under, 1e-9)
-    return np.where(below.any(axis=1), crossing, np.nan)
+    return np.where(first > 0, crossing, np.nan)
 
 
 def _second_differences(
@@ -216,7 +216,9 @@ def _explain(bends: Float[np.ndarray, "m 2"]) -> tuple[float, float]:
     bends = bends[np.argsort(bends[:, 0])]
     surest = bends[: max(len(bends) // 10, _ENOUGH)]
     seen = np.quantile(np.abs(surest[:, 1]), _ONE_SIGMA) ** 2
-    floor = max(seen - 1.1 * np.median(surest[:, 0]) ** 2, 0.0)
+    noise = np.median(surest[:, 0]) ** 2
+    # What is seen is itself known to 2.6 / √n of it: less than twice that says nothing.
+    floor = seen - noise if seen > (1.0 + 5.2 / math.sqrt(len(surest))) * noise else 0.0
     rest = bends[bends[:, 0] ** 2 > 2.0 * floor]
     if len(rest) < 3 * _ENOUGH:
         return 1.1, float(np.sqrt(floor))

@@ -1,0 +1,185 @@
+"""What Murk promises beyond what every extractor does: it knows noise, snow, edges and gloss."""
+
+import numpy as np
+import pytest
+
+from murkscan.errors import InputError
+from murkscan.extract import Murk
+from murkscan.extract.neighbours import with_neighbours
+from murkscan.extract.noise import learn_levels
+from murkscan.types.background import Background
+from murkscan.types.camera import Camera
+from murkscan.types.frame import Frame
+from murkscan.types.laser import Laser
+from murkscan.types.rig import Rig
+
+HEIGHT, LENGTH = 160, 240
+"""Pixels across the stripe and along it."""
+GAIN, READ = 0.03, 0.04
+"""Variance of a pixel: that of 9000 electrons in 255 grey levels, read with 9."""
+RIG = Rig(
+    Camera((LENGTH, HEIGHT), (600.0, 600.0), (120.0, 80.0)),
+    (Laser.from_baseline_angle(0.2, 1.1, "y"),),
+)
+LINES = np.arange(LENGTH)
+
+
+def _light(centres, peak, *, width=1.3):
+    """Draw the stripe's light; NaN where a scan line has none."""
+    off = (np.arange(HEIGHT)[:, None] - centres) / width
+    return np.nan_to_num(peak * np.exp(-0.5 * off**2))
+
+
+def _film(light, *, seed=0):
+    """Keep light as a sensor does: each frame with its own shot and read noise."""
+    rng = np.random.default_rng(seed)
+    frames = []
+    for index, one in enumerate(light):
+        noise = np.sqrt(READ + GAIN * one) * rng.standard_normal(one.shape)
+        image = np.clip(np.rint(one + noise), 0, 255).astype(np.uint8)
+        frames.append(Frame(image, index, index / 25))
+    return frames
+
+
+def _glow():
+    """Give a glow that is 100 times brighter where it is near than a faint stripe far away."""
+    return 12.0 + 120.0 * np.exp(-np.arange(HEIGHT)[:, None] / 30.0) * np.ones(LENGTH)
+
+
+def _hull(index):
+    """Give where a gently bent surface is seen in a frame."""
+    return 95.0 + 12.0 * np.sin(LINES / 70.0) + 0.3 * index
+
+
+def _extract(frames, extractor=None):
+    extractor = extractor or Murk()
+    background = extractor.learn(frames, RIG)
+    return list(extractor.extract(frames, RIG, background))
+
+
+def test_a_faint_stripe_is_found_beneath_a_bright_glow():
+    """A peak of 6 on glow of 18 to 25 has a noise of 0.85: a sixth of it, on 3 pixels or so."""
+    stripes = _extract(_film([_glow() + _light(_hull(i), 6.0) for i in range(12)]))
+    errors = np.concatenate(
+        [s.pixels[:, 1] - _hull(i)[s.pixels[:, 0].astype(int)] for i, s in enumerate(stripes)]
+    )
+    assert len(errors) > 0.97 * 12 * LENGTH
+    assert np.mean(np.abs(errors) < 1.5) > 0.99
+
+
+def test_snow_is_no_stripe():
+    """Forty bright particles a frame, each in one frame only, with and without a stripe."""
+    rng = np.random.default_rng(1)
+    light = []
+    for _ in range(12):
+        one = _glow()
+        for u, v in zip(rng.uniform(0, LENGTH, 40), rng.uniform(0, HEIGHT, 40), strict=True):
+            near = (np.arange(HEIGHT)[:, None] - v) ** 2 + (LINES - u) ** 2
+            one = one + rng.uniform(20, 120) * np.exp(-0.5 * near / 1.5**2)
+        light.append(one)
+    assert sum(len(stripe) for stripe in _extract(_film(light))) == 0
+    found = _extract(_film([one + _light(_hull(i), 25.0) for i, one in enumerate(light)]))
+    off = np.concatenate(
+        [s.pixels[:, 1] - _hull(i)[s.pixels[:, 0].astype(int)] for i, s in enumerate(found)]
+    )
+    assert np.mean(np.abs(off) < 1.5) > 0.99
+
+
+@pytest.mark.parametrize("overlap", [10, 20])
+def test_an_occlusion_shows_both_surfaces(overlap):
+    """The far surface goes on behind the near one's edge for some scan lines."""
+    near = np.where(LINES < 120, 60.0 + 0.05 * LINES, np.nan)
+    is_far = 120 - overlap <= LINES
+    far = np.where(is_far, 100.0 + 0.05 * LINES, np.nan)
+    (stripe,) = _extract(_film([8.0 + _light(near, 90.0) + _light(far, 60.0)]))
+    both = np.unique(stripe.pixels[stripe.branch == 1, 0])
+    assert set(both) <= set(LINES[is_far & (LINES < 120)])
+    assert len(both) >= 0.9 * overlap
+
+
+def test_a_reflection_beside_the_stripe_is_left_out():
+    """A line that runs beside the stripe all along, a third as bright, is no surface."""
+    light = [8.0 + _light(_hull(i), 90.0) + _light(_hull(i) - 35.0, 30.0) for i in range(6)]
+    stripes = _extract(_film(light))
+    for i, stripe in enumerate(stripes):
+        off = stripe.pixels[:, 1] - _hull(i)[stripe.pixels[:, 0].astype(int)]
+        assert np.abs(off).max() < 1.5
+        assert len(stripe) == LENGTH
+
+
+def test_a_step_in_depth_stays_where_it_is():
+    """Neighbours are not joined over a jump: the first centre behind it is on the other side."""
+    step = np.where(LINES < 120, 60.0, 80.0)
+    stripes = _extract(_film([8.0 + _light(step, 40.0) for _ in range(6)]))
+    for stripe in stripes:
+        off = stripe.pixels[:, 1] - step[stripe.pixels[:, 0].astype(int)]
+        assert np.abs(off).max() < 1.0
+
+
+@pytest.mark.parametrize("peak", [12.0, 60.0, 180.0])
+def test_sigma_holds_two_thirds_of_the_errors_on_a_rough_surface(peak):
+    """Surfaces are taken to be rough by 0.06 px from scan line to scan line; this one is, by 0.05.
+
+    Its steps of 0.04 px a line put each line 0.05 px off the line between its neighbours'. Chance
+    moves 4800 errors by 1 point, their kinship with neighbours by 3, the guess of a law by more.
+    """
+    steps = 0.04 * np.random.default_rng(3).standard_normal(LENGTH)
+    centres = [_hull(i) + np.cumsum(steps) for i in range(20)]
+    within = [
+        np.abs(s.pixels[:, 1] - centre[s.pixels[:, 0].astype(int)]) < s.sigma
+        for s, centre in zip(
+            _extract(_film([8.0 + _light(centre, peak) for centre in centres])),
+            centres,
+            strict=True,
+        )
+    ]
+    assert np.concatenate(within).mean() == pytest.approx(0.683, abs=0.05)
+
+
+def test_a_chunk_gives_what_the_whole_would():
+    frames = _film([_glow() + _light(_hull(i), 8.0) for i in range(40)])
+    murk = Murk()
+    background = murk.learn(frames, RIG)
+    whole = list(murk.extract(frames, RIG, background))[18:22]
+    halo = murk.look_ahead
+    part = list(murk.extract(frames[18 - halo : 22 + halo], RIG, background))[halo:-halo]
+    for one, other in zip(whole, part, strict=True):
+        np.testing.assert_array_equal(one.pixels, other.pixels)
+        np.testing.assert_array_equal(one.posterior, other.posterior)
+
+
+def test_the_noise_of_each_level_is_learnt():
+    """To a tenth: some thousand differences a level know their variance to 2 to 6 %."""
+    light = np.linspace(10.0, 200.0, HEIGHT)[:, None] * np.ones(LENGTH)
+    noise = learn_levels([frame.image for frame in _film([light] * 6)])
+    assert noise.gain == pytest.approx(GAIN, rel=0.1)
+    assert noise.white == 255
+
+
+def test_saturation_is_told_from_the_pictures():
+    light = 20.0 + _light(_hull(0), 400.0)
+    frames = [
+        Frame(np.minimum(frame.image, 235), frame.index, frame.time) for frame in _film([light] * 3)
+    ]
+    assert learn_levels([frame.image for frame in frames]).white == 235
+
+
+def test_a_background_of_another_extractor_is_refused():
+    frame = _film([_glow()])[0]
+    with pytest.raises(InputError, match="learn"):
+        list(Murk().extract([frame], RIG, Background(noise=1.0)))
+
+
+@pytest.mark.parametrize("missing", [[], [3], [3, 4, 5, 6, 7, 8]])
+def test_neighbours_are_those_within_reach(missing):
+    numbered = [_film([np.zeros((2, 2))])[0] for _ in range(12)]
+    frames = [
+        Frame(frame.image, index, 0.0)
+        for index, frame in enumerate(numbered)
+        if index not in missing
+    ]
+    for own, near in zip(frames, with_neighbours(frames, 2), strict=True):
+        assert near[0] is own
+        assert {own.index + distance for distance in near} == {
+            frame.index for frame in frames if abs(frame.index - own.index) <= 2
+        }
