@@ -12,6 +12,7 @@ from ..types.arrays import Directions, Faces, Indices, Points, Scalars
 from .surface import vertex_normals
 from .views import View, standard_views
 
+Values = Float[np.ndarray, "vertices"]
 Times = Float[np.ndarray, "profiles"]
 Path = Float[np.ndarray, "positions 3"]
 
@@ -86,7 +87,7 @@ class Model:
         others = tuple(one for one in self.layers if one.name != layer.name)
         return replace(self, layers=(*others, layer))
 
-    def _carry(self, values: Scalars, at: Points) -> Scalars:
+    def _carry(self, values: Scalars, at: Points) -> Values:
         away, nearest = KDTree(at).query(self.vertices, distance_upper_bound=4 * self.spacing)
         found = np.isfinite(away)
         return np.where(found, np.append(values, np.nan)[nearest], np.nan)

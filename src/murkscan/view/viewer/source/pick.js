@@ -1,5 +1,7 @@
 // Which measured point a finger or a mouse means: the nearest one in the picture that is in front.
 
+const CLOSE = 3; // px
+
 // Gives the point's number, or null where there is none within so many pixels.
 export function pick(app, x, y, radius) {
   const { model, stage, cut, now } = app;
@@ -22,8 +24,12 @@ export function pick(app, x, y, radius) {
     found.push({ i, off, depth: -(view[2] * px + view[6] * py + view[10] * pz + view[14]) });
   }
   if (!found.length) return null;
-  const front = found.reduce((least, { depth }) => Math.min(least, depth), Infinity);
-  const near = found.filter(({ depth }) => depth < front + reach + 3 * model.spacing);
+  // What lies right under the pointer is meant before anything in front of it but beside.
+  const close = Math.max(CLOSE / scale, model.spacing);
+  const under = found.filter(({ off }) => off < close * close);
+  const meant = under.length ? under : found;
+  const front = meant.reduce((least, { depth }) => Math.min(least, depth), Infinity);
+  const near = meant.filter(({ depth }) => depth < front + reach + 3 * model.spacing);
   return near.reduce((best, one) => (one.off < best.off ? one : best)).i;
 }
 

@@ -45,6 +45,8 @@ export class Stage {
     this.resize();
   }
 
+  // Whether all is drawn, and nothing will be until the reader does something.
+  get isAtRest() { return !this.request && !this.moving && this.cost > 0; }
   get height() { return this.canvas.clientHeight; }
   get width() { return this.canvas.clientWidth; }
   // Pixels of the page a metre.

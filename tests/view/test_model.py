@@ -1,0 +1,130 @@
+"""What the page is given: joined, thinned, carried from one place to another."""
+
+import hashlib
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import murkscan.view
+from murkscan.errors import InputError, NotEnoughData
+from murkscan.mesh import GridMesh
+from murkscan.types.mesh import Mesh
+from murkscan.view import Layer, model_of_points, model_of_scan, render_viewer
+from murkscan.view.thinned import choose_fairly, cluster_vertices
+
+from ..scans import plane, scan_cloud, sphere
+
+VIEWER = Path(murkscan.view.__file__).parent / "viewer"
+
+
+@pytest.fixture(scope="module")
+def cloud():
+    return scan_cloud(plane, spacing=2e-3, num_rows=80)
+
+
+def area(mesh):
+    a, b, c = (mesh.vertices[corner] for corner in mesh.faces.T)
+    return np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
+
+
+def test_a_surface_between_measured_points_adds_none(cloud):
+    mesh = GridMesh().mesh(cloud)
+    model = model_of_scan("plane", cloud, mesh=mesh)
+    assert len(model.vertices) == model.num_measured == len(cloud)
+    np.testing.assert_array_equal(model.vertices[model.faces], mesh.vertices[mesh.faces])
+
+
+def test_a_surface_beside_the_points_keeps_its_own_vertices(cloud):
+    mesh = GridMesh().mesh(cloud)
+    moved = Mesh(mesh.vertices + np.array([0, 0, 1e-5]), mesh.faces)
+    model = model_of_scan("plane", cloud, mesh=moved)
+    assert model.num_measured == len(cloud)
+    np.testing.assert_array_equal(model.vertices[model.faces], moved.vertices[moved.faces])
+    # What is known of the nearest point is known of the vertex.
+    frames = np.unique(cloud.frame, return_inverse=True)[1]
+    np.testing.assert_array_equal(model.moments[: len(cloud)], frames)
+    np.testing.assert_array_equal(np.unique(model.moments), np.unique(frames))
+
+
+def test_points_lie_in_order_of_time(cloud):
+    shuffled = cloud[np.random.default_rng(0).permutation(len(cloud))]
+    model = model_of_scan("plane", shuffled)
+    assert np.all(np.diff(model.moments[: model.num_measured]) >= 0)
+
+
+def test_more_points_than_a_browser_holds_are_chosen_fairly_and_that_is_said(cloud):
+    mesh = GridMesh().mesh(cloud)
+    model = model_of_scan("plane", cloud, mesh=mesh, most=500)
+    assert model.num_measured == 500
+    assert f"500 of the scan's {len(cloud):,} points" in model.note
+    assert f"of its {len(mesh.vertices):,} vertices" in model.note
+
+
+def test_a_fair_choice_favours_no_part():
+    chosen = choose_fairly(100_000, 20_000)
+    counts = np.histogram(chosen, bins=10, range=(0, 100_000))[0]
+    # 2000 a part, of binomial deviation 40: five of them.
+    assert np.abs(counts - 2000).max() < 200
+
+
+def test_a_thinned_surface_is_still_whole():
+    mesh = GridMesh().mesh(scan_cloud(sphere, spacing=1e-3))
+    thin = cluster_vertices(mesh, 1500)
+    assert 600 < len(thin.vertices) <= 1500
+    # Cells of 3 mm on a ball of 50 mm radius lose a chord's share at the rim and in the bulge.
+    assert area(thin) == pytest.approx(area(mesh), rel=0.06)
+    assert set(map(tuple, thin.vertices)) <= set(map(tuple, mesh.vertices))
+
+
+def test_a_layer_from_other_places_reaches_the_nearest_vertices_only():
+    points = np.stack([np.linspace(0, 1, 101), np.zeros(101), np.zeros(101)], axis=1)
+    half = points[:51]
+    model = model_of_points("line", points)
+    deviation = Layer("deviation", half[:, 0], "mm", "coolwarm", is_signed=True)
+    carried = model.with_layer(deviation, at=half).layers[-1].values
+    np.testing.assert_array_equal(carried[:51], half[:, 0])
+    assert np.isnan(carried[70:]).all()
+
+
+def test_a_layer_of_another_length_is_refused():
+    model = model_of_points("line", np.eye(3))
+    with pytest.raises(InputError, match="2 values for 3 places"):
+        model.with_layer(Layer("deviation", np.zeros(2), "mm"))
+
+
+def test_a_page_without_points_is_refused():
+    with pytest.raises(NotEnoughData, match="nothing to show"):
+        render_viewer([], title="nothing")
+    with pytest.raises(NotEnoughData, match="empty"):
+        render_viewer([model_of_points("empty", np.zeros((0, 3)))], title="nothing")
+
+
+def test_points_that_are_nowhere_are_refused():
+    points = np.eye(3)
+    points[0, 0] = np.nan
+    with pytest.raises(InputError, match="1 of 3 points"):
+        render_viewer([model_of_points("broken", points)], title="broken")
+
+
+def test_the_page_names_no_address_to_load_from(cloud):
+    page = render_viewer([model_of_scan("plane", cloud)], title="plane")
+    assert not re.findall(r"<(?:script|link|img)[^>]+(?:src|href)=", page)
+    assert "default-src 'none'" in page
+
+
+def test_the_committed_script_is_made_from_its_sources():
+    sources = sorted((VIEWER / "source").glob("*.js"))
+    files = [VIEWER / "build.js", VIEWER / "package.json", *sources]
+    digest = hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
+    head = (VIEWER / "viewer.js").read_text("utf-8")[:2000]
+    assert digest in head, "run `make viewer`"
+    assert "The MIT License" in head
+
+
+def test_the_library_s_version_is_exact():
+    package = json.loads((VIEWER / "package.json").read_text())
+    versions = package["dependencies"] | package["devDependencies"]
+    assert all(re.fullmatch(r"\d+\.\d+\.\d+", version) for version in versions.values())

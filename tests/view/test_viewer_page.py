@@ -1,0 +1,277 @@
+"""The page as users meet it: in a browser, from a file, by mouse and keys."""
+
+import re
+
+import numpy as np
+import pytest
+
+from murkscan.mesh import GridMesh
+from murkscan.types.frame_times import FrameTimes
+from murkscan.view import Layer, model_of_points, model_of_scan, render_viewer
+
+from ..scans import scan, scan_cloud, sphere, step
+from .browser import chromium, open_page, picture, rest
+
+HOSTILE = "</script><script>window.broken=1</script><img src=x onerror='window.broken=1'>"
+SIGMA = 2e-4
+
+
+def scanned(surface, name="scan", **settings):
+    """Give a scan's model, and the cloud that it shows."""
+    cloud = scan_cloud(surface, **settings)
+    _, trajectory = scan(surface, **settings)
+    times = np.unique(cloud.frame)
+    model = model_of_scan(
+        name,
+        cloud,
+        mesh=GridMesh().mesh(cloud),
+        trajectory=trajectory,
+        frames=FrameTimes(times.astype(np.uint32), times * 0.04),
+    )
+    return model, cloud
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with chromium() as started:
+        yield started
+
+
+@pytest.fixture(scope="module")
+def steps():
+    return scanned(step, spacing=2e-3, noise=SIGMA)
+
+
+@pytest.fixture(scope="module")
+def opened(browser, steps, tmp_path_factory):
+    """A page with a step scanned, and a ball, which a hostile name has been given."""
+    ball, _ = scanned(sphere, HOSTILE, spacing=2e-3)
+    file = tmp_path_factory.mktemp("page") / "a page?#.html"
+    file.write_text(render_viewer([steps[0], ball], title=HOSTILE), "utf-8")
+    return open_page(browser, file)
+
+
+@pytest.fixture
+def page(opened):
+    """The same page as it was opened, seen from the front; what is done there causes no error."""
+    page, faults = opened
+    page.evaluate("murkscan.update({scan: 0, measures: [], measuring: false, layer: 'depth'})")
+    for key in ("r", "2"):
+        page.keyboard.press(key)
+    rest(page)
+    yield page
+    assert faults == []
+
+
+def drawn(page):
+    """Tell which pixels of the stage differ from its bare lower right part, without the writing."""
+    image = picture(page)[:, : page.evaluate("murkscan.stage.width")].astype(int)
+    off = np.abs(image - image[300, -8]).max(axis=2) > 24
+    off[:84], off[-72:], off[:, :110], off[:, -4:] = False, False, False, False
+    return off
+
+
+def click(page, point):
+    """Click where the page shows a point of the world [m]."""
+    x, y = page.evaluate(
+        "p => murkscan.stage.project(p.map((x, k) => x - murkscan.model.centre[k]))", point.tolist()
+    )[:2]
+    page.mouse.click(x, y)
+
+
+def test_the_page_opens_without_an_error_and_then_rests(opened, page):
+    assert opened[1] == []
+    frames = page.evaluate("murkscan.stage.canvas.dataset.frames")
+    page.wait_for_timeout(300)
+    assert page.evaluate("murkscan.stage.canvas.dataset.frames") == frames
+
+
+def test_the_model_covers_what_its_size_and_the_scale_say(page):
+    page.keyboard.press("b")
+    page.keyboard.press("2")
+    rest(page)
+    vertices = page.evaluate("Array.from(murkscan.model.positions)")
+    right, down, _ = np.array(vertices).reshape(-1, 3).T * page.evaluate("murkscan.stage.scale")
+    # The ball's visible cap is nearly a disc of the points' extent, whose rim is a spacing wide.
+    area = np.pi / 4 * np.ptp(right) * np.ptp(down)
+    assert drawn(page).sum() == pytest.approx(area, rel=0.1)
+
+
+def test_the_scale_bar_is_as_long_as_it_says(page):
+    said = page.locator("#scale span").inner_text()
+    width = page.locator("#scale i").bounding_box()["width"]
+    per_metre = page.evaluate("murkscan.stage.scale")
+    assert width / per_metre * 1e3 == pytest.approx(float(said.removesuffix(" mm")), rel=1e-3)
+
+
+def test_positions_arrive_as_finely_as_the_page_says(page, steps):
+    model, _ = steps
+    shown = np.array(page.evaluate("Array.from(murkscan.model.positions)")).reshape(-1, 3)
+    centre, grid = page.evaluate("[murkscan.model.centre, murkscan.model.grid.step]")
+    # Half a step, and single precision.
+    off = np.abs(shown + centre - model.vertices).max()
+    assert off <= grid / 2 + 1e-7
+    assert grid / 2 <= min(2e-5, 0.1 * SIGMA) * (1 + 1e-9)
+
+
+def test_a_known_length_is_measured_right_and_its_doubt_follows_sigma(page, steps):
+    _, cloud = steps
+    # One point on each of the two planes, 30 mm apart in depth.
+    off = [np.abs(cloud.points - place).sum(axis=1) for place in ((0, -0.02, 0.47), (0, 0.02, 0.5))]
+    a, b = (int(distance.argmin()) for distance in off)
+    page.keyboard.press("m")
+    click(page, cloud.points[a])
+    click(page, cloud.points[b])
+    rest(page)
+    assert page.evaluate("murkscan.state.measures.map(m => [m.first, m.second])") == [[a, b]]
+    span = cloud.points[b] - cloud.points[a]
+    said, doubt = re.findall(r"[\d.]+", page.locator("#labels span").inner_text())
+    # Two roundings of at most 0.02 mm on each axis, and the last digit.
+    assert float(said) == pytest.approx(1e3 * np.linalg.norm(span), abs=0.05)
+    camera = np.array([cloud.frame[[a, b]] * 2e-3 - 0.06, [0, 0], [0, 0]]).T
+    rays = cloud.points[[a, b]] - camera
+    along = rays @ span / np.linalg.norm(span) / np.linalg.norm(rays, axis=1)
+    expected = 1.96e3 * np.sqrt(np.sum((SIGMA * along) ** 2))
+    # The rounding adds a per cent at most; two digits are shown.
+    assert float(doubt) == pytest.approx(expected, rel=0.02, abs=0.006)
+
+
+def test_escape_stops_measuring_and_keeps_what_was_measured(page, steps):
+    page.keyboard.press("m")
+    for place in (0, -1):
+        click(page, steps[1].points[place])
+    page.keyboard.press("Escape")
+    assert not page.evaluate("murkscan.state.measuring")
+    assert page.evaluate("murkscan.state.measures.length") == 1
+
+
+def test_a_cut_takes_a_half_away_and_draws_the_section(page):
+    before = drawn(page).sum()
+    page.keyboard.press("c")
+    rest(page)
+    assert drawn(page).sum() == pytest.approx(before / 2, rel=0.15)
+    places = page.locator("#tool-cut svg path").first.get_attribute("d")
+    ends = np.array(re.findall(r"[-\d.]+", places), float).reshape(-1, 2)
+    # Two level lines, 30 mm apart; ± 4.5 sigma of noise on either.
+    assert np.ptp(ends, axis=0).min() == pytest.approx(30, abs=9e3 * SIGMA)
+    orange = np.abs(picture(page).astype(int) - [0xE0, 0x56, 0x1B]).max(axis=2) < 40
+    assert orange.sum() > 200
+
+
+def test_the_other_side_of_a_cut_is_the_other_half(page):
+    whole = drawn(page)
+    page.keyboard.press("c")
+    rest(page)
+    one = drawn(page)
+    page.get_by_role("button", name="Other side").click()
+    rest(page)
+    other = drawn(page)
+    # The section's own line, 3 px wide, is in both.
+    assert (one & other).mean(axis=0).max() > 0
+    assert (one & other).sum() < 0.05 * whole.sum()
+    assert (whole & ~(one | other)).sum() < 0.01 * whole.sum()
+
+
+def test_playing_ends_with_the_whole_scan_and_then_rests(page):
+    whole = drawn(page).sum()
+    page.evaluate("murkscan.update({profile: 10})")
+    rest(page)
+    assert 0 < drawn(page).sum() < 0.6 * whole
+    page.evaluate("murkscan.update({profile: murkscan.model.times.length - 3})")
+    page.keyboard.press("p")
+    page.wait_for_function("() => !murkscan.state.playing", timeout=10_000)
+    rest(page)
+    assert drawn(page).sum() == whole
+
+
+@pytest.mark.parametrize("key", ["ArrowLeft", "ArrowUp", "+", "1", "6"])
+def test_keys_turn_zoom_and_look_from_all_sides(page, key):
+    before = drawn(page)
+    page.keyboard.press(key)
+    rest(page)
+    after = drawn(page)
+    assert after.any()
+    assert (before != after).sum() > 50
+
+
+def test_a_drag_turns_the_model_and_r_brings_it_back(page):
+    page.keyboard.press("r")
+    rest(page)
+    before = drawn(page)
+    page.mouse.move(350, 300)
+    page.mouse.down()
+    page.mouse.move(450, 330, steps=4)
+    page.mouse.up()
+    rest(page)
+    assert np.any(drawn(page) != before)
+    page.keyboard.press("r")
+    rest(page)
+    np.testing.assert_array_equal(drawn(page), before)
+
+
+def test_colours_follow_the_chosen_layer(page):
+    page.locator("#tool-show select").select_option("plain")
+    rest(page)
+    image = picture(page)[drawn_rows(page)]
+    assert np.ptp(image.astype(int), axis=1).max() < 60
+    page.locator("#tool-show select").select_option("depth")
+    rest(page)
+    assert np.ptp(picture(page)[drawn_rows(page)].astype(int), axis=1).max() > 100
+    assert "depth [mm]" in page.locator("#legend").inner_text()
+
+
+def drawn_rows(page):
+    """Pixels of the model in the middle of the stage."""
+    mask = np.zeros(picture(page).shape[:2], bool)
+    mask[150:500, 130:600] = drawn(page)[150:500, 130:600]
+    return mask
+
+
+def test_another_scan_is_one_key_away(page):
+    name = page.locator("#about").inner_text()
+    page.keyboard.press("b")
+    rest(page)
+    assert page.locator("#about").inner_text() != name
+    assert drawn(page).any()
+
+
+def test_a_hostile_name_is_only_a_name(page):
+    assert page.locator("h1").inner_text() == HOSTILE
+    assert page.evaluate("window.broken") is None
+
+
+@pytest.mark.parametrize(("scheme", "is_dark"), [("light", False), ("dark", True)])
+def test_the_page_follows_the_system_s_theme_and_t_changes_it(browser, tmp_path, scheme, is_dark):
+    points = np.stack(np.meshgrid(*3 * [np.linspace(0, 0.1, 9)]), axis=-1).reshape(-1, 3)
+    layer = Layer("deviation", points[:, 0] * 1e3 - 50, "mm", "coolwarm", is_signed=True)
+    file = tmp_path / "index.html"
+    file.write_text(render_viewer([model_of_points("cube", points, layers=[layer])], title="cube"))
+    page, faults = open_page(browser, file, scheme=scheme)
+    first = picture(page)
+    page.keyboard.press("t")
+    rest(page)
+    second = picture(page)
+    # Of the stage and of the panel: grey levels of their backgrounds.
+    for row, column in ((320, 600), (-8, -8)):
+        levels = first[row, column].mean(), second[row, column].mean()
+        assert (levels[0] < 50, levels[1] > 200) == (is_dark, is_dark)
+    # Zero is in the middle of the colours.
+    low, high = page.evaluate("murkscan.range")
+    assert low == -high
+    assert faults == []
+    page.close()
+
+
+def test_one_profile_is_shown_as_points_and_says_so(browser, steps, tmp_path):
+    _, cloud = steps
+    model = model_of_scan("one", cloud[cloud.frame == 30])
+    file = tmp_path / "index.html"
+    file.write_text(render_viewer([model], title="one"))
+    page, faults = open_page(browser, file, size=(390, 844))
+    page.get_by_role("button", name="Show", exact=True).click()
+    assert "Only one profile" in page.locator("#tool-show").inner_text()
+    page.get_by_role("button", name="Path and time").click()
+    assert "nothing to play" in page.locator("#tool-path").inner_text()
+    page.keyboard.press("p")
+    assert faults == []
+    page.close()
