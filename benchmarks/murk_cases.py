@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from murk_traced import FRAMES, is_possible, trace_recording
 
 from murkscan.capture import AbstractRecording, open_recording
 from murkscan.io.parquet import load_true_stripe
@@ -65,7 +66,8 @@ OTHERS: dict[str, Callable[[Scene], Scene]] = {
     "c3-noise": _with_sensor(read_noise=_READ_NOISE),
 }
 """Cases at c = 3 /m beside the ladder, and what is changed for each."""
-CASES = (*RUNGS, *OTHERS, *HD)
+TRACED = "c3-traced"
+CASES = (*RUNGS, *OTHERS, TRACED, *HD)
 
 
 @dataclass(frozen=True)
@@ -98,9 +100,8 @@ class Part:
 
     def paint(self, truth: TrueStripe) -> np.ndarray:
         """Give the albedo of true centres on the hull; NaN on the wall, which is even."""
-        scene = self.scene()
         albedo, on_hull = np.full(len(truth), np.nan), truth.points[:, 2] < _WALL
-        for body in scene.bodies:
+        for body in () if self.case == TRACED else self.scene().bodies:
             if not isinstance(body.texture, Plain):
                 points = body.world_from_object.inverse() @ truth.points[on_hull]
                 albedo[on_hull] = body.texture.albedo(points)
@@ -109,10 +110,14 @@ class Part:
     def recorded(self, cache: Path) -> "Recorded":
         """Give the recording, drawn if the cache does not hold it whole."""
         folder = cache / self.name
-        if not (folder / "truth" / "mesh.ply").exists():  # what is written last
+        whole = (folder / "recording.mkv", folder / "truth" / "stripes.parquet")
+        if not all(path.exists() for path in whole):
             shutil.rmtree(folder, ignore_errors=True)
-            simulate_recording(self.scene(), folder)
-        return Recorded(folder, is_interlaced=not self.case.endswith("-hd"))
+            if self.case == TRACED:
+                trace_recording(folder, self.seed)
+            else:
+                simulate_recording(self.scene(), folder)
+        return Recorded(folder, is_interlaced=self.case not in (*HD, TRACED))
 
 
 def _repaint(body: Body, seed: int) -> Body:
@@ -147,8 +152,9 @@ class Recorded:
 
 
 def parts_of(cases: list[str], seeds: list[int], pictures: int, pictures_hd: int) -> Iterator[Part]:
-    """Give the parts in the order of the cases: of HD the first seed alone, and fewer pictures."""
+    """Give the parts in the order of the cases: beside the ladder of the first seed alone."""
     for case in cases:
-        is_hd = case in HD
-        for seed in seeds[:1] if is_hd or case in OTHERS else seeds:
-            yield Part(case, seed, pictures_hd if is_hd else pictures)
+        length = {TRACED: FRAMES} | dict.fromkeys(HD, pictures_hd)
+        if case != TRACED or is_possible():
+            for seed in seeds if case in RUNGS else seeds[:1]:
+                yield Part(case, seed, length.get(case, pictures))

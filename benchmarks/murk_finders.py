@@ -21,6 +21,8 @@ _HALF = 4
 _RISE, _CONTRAST = 10.0, 5.0
 """Grey levels, and standard deviations of the noise, by which a peak must stand out: those of the
 package's own extractors."""
+_WIDTH = (1, 30)
+"""Least and largest width of a peak at half its prominence [px]; water widens it."""
 _PIXEL = 0.29
 """Standard deviation of a centre that may lie anywhere in its pixel [px]; these tell none."""
 
@@ -53,7 +55,7 @@ class FindPeaks(AbstractExtractor):
         for frame in frames:
             columns = np.ascontiguousarray(frame.image.T.astype(float))
             peaks = [
-                find_peaks(column, prominence=_least(background), width=(1, 3 * _HALF))[0]
+                find_peaks(column, prominence=_least(background), width=_WIDTH)[0]
                 for column in columns
             ]
             lines = np.repeat(np.arange(len(peaks)), [len(one) for one in peaks])

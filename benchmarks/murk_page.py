@@ -5,11 +5,12 @@ from pathlib import Path
 from typing import Any
 
 from harness import DOCS, Figure, tell
-from murk_cases import CASES, HD, OTHERS, RUNGS, Part
+from murk_cases import CASES, HD, OTHERS, RUNGS, TRACED, Part
 from murk_causes import FALSE, MISSED
 from murk_judge import pool
 from murk_plot import LABELS, STYLES, draw_curves
 from murk_run import load_results
+from murk_traced import SAMPLES
 from murk_words import AFTER, CAUSES, HOW, PULL, WATERS
 
 CHAMPION = "Murk"
@@ -51,8 +52,9 @@ def tell_page(cache: Path) -> None:
         "## The ladder, 720 × 576", _table_of_champion(results, pooled, RUNGS),
         "## All finders", _tables_of_all(pooled),
         "## Where points are lost", CAUSES, _table_of_causes(results),
-        "## Other waters, c = 3 /m", WATERS, _table_of_champion(results, pooled, tuple(OTHERS)),
-        _table("recall / precision [%]", list(OTHERS), pooled, _both),
+        "## Other waters, c = 3 /m", WATERS.format(**SAMPLES),
+        _table_of_champion(results, pooled, (*OTHERS, TRACED)),
+        _table("recall / precision [%]", [*OTHERS, TRACED], pooled, _both),
         "## 1920 × 1200", _table_of_champion(results, pooled, HD),
         "## Pull of paint", PULL, _table("along / across the stripe [px]", list(RUNGS), pooled,
                                          _pulls),

@@ -36,7 +36,15 @@ One thing is changed at a time: *ambient*, daylight that raises the background t
 levels; *gloss*, 0.15 on all surfaces; *h264*, kept by H.264 at crf 23; *phase*, Henyey-Greenstein
 with g = 0.9 in place of Petzold's harbour; *skirt*, b/c = 0.95 in place of 0.83; *paint*, bands
 of 0.03 and 0.11 along the hull in place of growth; *noise*, 25 e⁻ of reading noise in place of
-9."""
+9.
+
+*traced* has nothing of the simulator: ten frames of a flat wall (albedo 0.2, from 0.72 to 0.88
+m), whose light Mitsuba traced (`path_tracer_scene`: 320 × 240 px, a stripe of 4.7 px, 1σ, b/c
+0.83, Henyey-Greenstein 0.9, c = 3 /m; {lit} paths a pixel, {black} for the glow before a black
+wall). All columns are their mean; what is left of the path tracer's own noise is taken out by a
+sum of Gaussians around the true centre for the stripe with its skirt, and a stiff spline for the
+glow; noise of the same sensor is added. So it tells whether a finder copes with such water, not
+its bias."""
 
 CAUSES = """\
 Missed points as a share [%] of the visible ones, false points of the found ones, each under the
@@ -60,4 +68,4 @@ oplab-pipeline's finder and ridge-detector run in an environment of their own, o
 frame. oplab-pipeline's has its default settings, and 80 columns more on either side, which it
 leaves out; ridge-detector (Steger 1998, multi-scale) has one line width of 3 px and contrasts of
 5 and 15 grey levels. `find_peaks` asks for a prominence of 10 grey levels and five times the
-noise, and a width of 1 to 12 px."""
+noise, and a width of 1 to 30 px."""
