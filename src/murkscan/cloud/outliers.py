@@ -1,26 +1,53 @@
-"""Points that are no surface: snow, glints, slips of the finder."""
+"""Points that are no surface, by every reason in turn."""
+
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ..geometry.grid import NONE, ScanGrid
-from ..types.arrays import Indices, Mask
+from ..types.arrays import Mask
 from ..types.cloud import PointCloud
+from .base import AbstractOutlierRule, SeenCloud
+from .doubtful import Doubtful
+from .seen_through import SeenThrough
+from .sparse import Sparse
 
-_SUPPORTS = ((0, 1), (0, 2), (1, 0), (1, 1), (1, -1), (2, 0))
-"""Cells, in profiles and scan lines, where a point of the same surface may lie; and opposite."""
+OUTLIER_RULES: tuple[AbstractOutlierRule, ...] = (Doubtful(), Sparse(), SeenThrough())
+"""The reasons not to believe a point, in the order in which a scan asks for them."""
+
+
+def find_outliers(
+    seen: SeenCloud, rules: Sequence[AbstractOutlierRule] = OUTLIER_RULES
+) -> Mapping[str, Mask]:
+    """Find the points that are no surface, by cause.
+
+    Args:
+        seen: The points of a scan, and from where they were seen.
+        rules: The reasons; each judges only what those before it let stay.
+
+    Returns:
+        For the cause of each rule which points it takes out: a point has one cause at most.
+
+    Raises:
+        InputError: A point is not finite.
+    """
+    left = np.arange(len(seen.cloud))
+    found: dict[str, Mask] = {}
+    for rule in rules:
+        is_false = rule.find(seen[left])
+        found[rule.cause] = np.zeros(len(seen.cloud), bool)
+        found[rule.cause][left[is_false]] = True
+        left = left[~is_false]
+    return found
 
 
 def remove_outliers(cloud: PointCloud, *, max_jump: float | None = None) -> PointCloud:
-    """Take out points that stand alone, and those in front of or behind both their neighbours.
+    """Take out the points that stand alone or stand out: what `Sparse` finds.
 
-    The neighbours are those of the scan's grid, so it does not matter that points lie closer along
-    the stripe than from profile to profile. A point at a depth jump, or at the rim of the surface,
-    has neighbours on one side and stays.
+    For those that need more than the points themselves, see `find_outliers`.
 
     Args:
         cloud: The points of a scan.
-        max_jump: Largest distance between neighbours on one surface [m]. None: told from the
-            points, generously: five times the usual distance, and four standard deviations.
+        max_jump: As in `Sparse` [m].
 
     Returns:
         The points that stay, in their order.
@@ -28,44 +55,4 @@ def remove_outliers(cloud: PointCloud, *, max_jump: float | None = None) -> Poin
     Raises:
         InputError: A point is not finite, or max_jump is not positive.
     """
-    if len(cloud) == 0:
-        return cloud
-    grid = ScanGrid.from_cloud(cloud, max_jump=max_jump)
-    return cloud[~(_stand_alone(grid) | _stand_out(grid))]
-
-
-def _stand_alone(grid: ScanGrid) -> Mask:
-    """Find the points that touch no other."""
-    alone = np.ones(len(grid.cloud), bool)
-    here = np.arange(len(alone))
-    for profiles, lines in _SUPPORTS:
-        there = grid.nearest(profiles, lines)
-        touching = grid.touches(here, there, profiles, lines)
-        alone[touching] = False
-        alone[there[touching]] = False
-    return alone
-
-
-def _stand_out(grid: ScanGrid) -> Mask:
-    """Find the points that leave their profile and come back: a spike, not a slope.
-
-    On a slope, however steep, the neighbours on the two sides lie in opposite directions.
-    """
-    here = np.arange(len(grid.cloud))
-    sides: dict[int, list[Indices]] = {-1: [], 1: []}
-    holds = np.zeros(len(here), bool)
-    for side, distance in ((-1, 1), (-1, 2), (1, 1), (1, 2)):
-        there = grid.nearest(0, side * distance)
-        # A spike's neighbours deserve no double allowance for being two scan lines away.
-        holds |= grid.touches(here, there, 0, side)
-        sides[side].append(there)
-    returns = np.zeros(len(here), bool)
-    for left in sides[-1]:
-        for right in sides[1]:
-            returns |= (left != NONE) & (right != NONE) & _same_way(grid, left, right)
-    return returns & ~holds
-
-
-def _same_way(grid: ScanGrid, left: Indices, right: Indices) -> Mask:
-    points = grid.cloud.points
-    return np.einsum("ij,ij->i", points[left] - points, points[right] - points) > 0
+    return cloud[~Sparse(max_jump).find(SeenCloud(cloud, cloud.points))]

@@ -1,5 +1,7 @@
 """Point clouds as binary PLY files: the project's own columns, and what MeshLab shows of them."""
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
@@ -8,20 +10,16 @@ import numpy as np
 from ..errors import FormatError
 from ..types.cloud import PointCloud
 from .atomic import replacing
+from .cloud_columns import BLOCK, COLUMNS, as_rows, from_columns
 
-_COLUMNS = np.dtype(
-    [(name, "<f8") for name in ("x", "y", "z")]
-    + [(name, "<f4") for name in ("nx", "ny", "nz")]
-    + [(name, "<f4") for name in ("signal", "posterior", "sigma", "sigma_common")]
-    + [("frame", "<i4"), ("scan_line", "<i4"), ("laser", "u1")]
-)
 _TYPES = {"<f8": "double", "<f4": "float", "<i4": "int", "|u1": "uchar"}
 """What PLY calls them."""
-_SCALARS = ("signal", "posterior", "sigma", "sigma_common", "frame", "scan_line", "laser")
 _FORMAT = "format binary_little_endian 1.0"
 _LONGEST_HEADER = 100
 """Lines of a header after which it is none."""
 _LONGEST_LINE = 1000
+_DIGITS = 20
+"""Room for the number of points, which is known last."""
 
 
 def save_cloud(path: Path, cloud: PointCloud) -> None:
@@ -30,15 +28,29 @@ def save_cloud(path: Path, cloud: PointCloud) -> None:
     Raises:
         DeviceError: The disk is full or cannot be written.
     """
-    rows = np.empty(len(cloud), _COLUMNS)
-    for axis, name in enumerate("xyz"):
-        rows[name] = cloud.points[:, axis]
-        rows["n" + name] = cloud.normals[:, axis]
-    for name in _SCALARS:
-        rows[name] = getattr(cloud, name)
+    with writing_cloud(path) as write:
+        write(cloud)
+
+
+@contextmanager
+def writing_cloud(path: Path) -> Iterator[Callable[[PointCloud], None]]:
+    """Write a cloud block by block; the file appears whole when the context ends, or not at all.
+
+    Raises:
+        DeviceError: The disk is full or cannot be written.
+    """
+    count = 0
     with replacing(path) as aside, aside.open("wb") as file:
-        file.write(_header(len(cloud)))
-        file.write(rows.data)
+        file.write(_header(0))
+
+        def write(cloud: PointCloud) -> None:
+            nonlocal count
+            count += len(cloud)
+            file.write(as_rows(cloud).data)
+
+        yield write
+        file.seek(0)
+        file.write(_header(count))
 
 
 def load_cloud(path: Path) -> PointCloud:
@@ -47,6 +59,16 @@ def load_cloud(path: Path) -> PointCloud:
     Raises:
         FormatError: The file is no such cloud; a header that lies about the number of points costs
             no memory.
+        FileNotFoundError: There is no such file.
+    """
+    return PointCloud.concatenate(list(iterate_cloud(path)))
+
+
+def iterate_cloud(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud]:
+    """Read a cloud that `save_cloud` wrote, some points at a time.
+
+    Raises:
+        FormatError: As for `load_cloud`, before the first points are given.
         FileNotFoundError: There is no such file.
     """
     with path.open("rb") as file:
@@ -58,17 +80,16 @@ def load_cloud(path: Path) -> PointCloud:
                 f"{path} declares {count} points of {columns.itemsize} bytes but holds {there} "
                 "bytes; it is cut off or damaged. Make it again with murkscan cloud."
             )
-        rows = np.fromfile(file, columns, count)
-    return PointCloud(
-        points=np.stack([rows[name] for name in ("x", "y", "z")], axis=1),
-        normals=np.stack([rows[name] for name in ("nx", "ny", "nz")], axis=1),
-        **{name: np.ascontiguousarray(rows[name]) for name in _SCALARS},
-    )
+        for begin in range(0, count, block):
+            rows = np.fromfile(file, columns, min(block, count - begin))
+            yield from_columns({name: rows[name] for name in COLUMNS.names or ()})
 
 
 def _header(count: int) -> bytes:
-    lines = ["ply", _FORMAT, "comment murkscan: metres", f"element vertex {count}"]
-    lines += [f"property {_TYPES[_COLUMNS[name].str]} {name}" for name in _COLUMNS.names or ()]
+    # The comment makes room, so that the number of points may be written last.
+    room = " " * (_DIGITS - len(str(count)))
+    lines = ["ply", _FORMAT, f"comment murkscan: metres{room}", f"element vertex {count}"]
+    lines += [f"property {_TYPES[COLUMNS[name].str]} {name}" for name in COLUMNS.names or ()]
     return "\n".join([*lines, "end_header", ""]).encode("ascii")
 
 
@@ -82,7 +103,7 @@ def _read_header(file: BinaryIO, path: Path) -> tuple[int, np.dtype[np.void]]:
         words = line.split()
         if line == "end_header":
             _require_columns(names, count, path)
-            return count, np.dtype([(name, _COLUMNS[name]) for name in names])
+            return count, np.dtype([(name, COLUMNS[name]) for name in names])
         if words[:2] == ["element", "vertex"] and words[2:3] and words[2].isdecimal() and count < 0:
             count = int(words[2])
         elif words[:1] == ["property"] and count >= 0:
@@ -94,13 +115,13 @@ def _read_header(file: BinaryIO, path: Path) -> tuple[int, np.dtype[np.void]]:
 
 def _known_column(words: list[str], path: Path) -> str:
     name = words[-1]
-    if name not in (_COLUMNS.names or ()) or words[1:] != [_TYPES[_COLUMNS[name].str], name]:
+    if name not in (COLUMNS.names or ()) or words[1:] != [_TYPES[COLUMNS[name].str], name]:
         raise FormatError(f"{path} has the unknown column {' '.join(words[1:])[:60]!r}.")
     return name
 
 
 def _require_columns(names: list[str], count: int, path: Path) -> None:
-    missing = [name for name in _COLUMNS.names or () if name not in names]
+    missing = [name for name in COLUMNS.names or () if name not in names]
     if missing or count < 0 or len(set(names)) < len(names):
         raise FormatError(
             f"{path} lacks the column {missing[0]!r}."

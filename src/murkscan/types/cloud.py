@@ -1,6 +1,9 @@
 """All points of a scan in one frame."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
+
+import numpy as np
 
 from .arrays import (
     Indices,
@@ -42,6 +45,30 @@ class PointCloud:
         """Count the points."""
         return len(self.points)
 
+    @classmethod
+    def concatenate(cls, clouds: Sequence["PointCloud"]) -> "PointCloud":
+        """Put clouds one after another; none make a cloud of length 0."""
+        parts = [empty_cloud(), *clouds]
+        return cls(
+            *(np.concatenate([getattr(part, c.name) for part in parts]) for c in fields(cls))
+        )
+
     def __getitem__(self, which: Mask | Indices | slice) -> "PointCloud":
         """Pick some of the points."""
         return PointCloud(*(getattr(self, column.name)[which] for column in fields(self)))
+
+
+def empty_cloud() -> PointCloud:
+    """Make a cloud without points."""
+    ratio, number = np.zeros(0, np.float32), np.zeros(0, np.int32)
+    return PointCloud(
+        points=np.zeros((0, 3)),
+        normals=np.zeros((0, 3), np.float32),
+        signal=ratio,
+        posterior=ratio,
+        sigma=ratio,
+        sigma_common=ratio,
+        frame=number,
+        scan_line=number,
+        laser=np.zeros(0, np.uint8),
+    )

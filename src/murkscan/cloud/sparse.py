@@ -1,0 +1,77 @@
+"""Points without neighbours: snow, glints, slips of the finder."""
+
+from dataclasses import dataclass
+from typing import final
+
+import numpy as np
+
+from ..geometry.grid import NONE, ScanGrid
+from ..types.arrays import Indices, Mask
+from .base import AbstractOutlierRule, SeenCloud
+
+_SUPPORTS = ((0, 1), (0, 2), (1, 0), (1, 1), (1, -1), (2, 0))
+"""Cells, in profiles and scan lines, where a point of the same surface may lie; and opposite."""
+
+
+@final
+@dataclass(frozen=True)
+class Sparse(AbstractOutlierRule):
+    """Points that stand alone, and those in front of or behind both their neighbours.
+
+    The neighbours are those of the scan's grid, so it does not matter that points lie closer along
+    the stripe than from profile to profile. A point at a depth jump, or at the rim of the surface,
+    has neighbours on one side and stays.
+    """
+
+    max_jump: float | None = None
+    """Largest distance between neighbours on one surface [m]. None: told from the points,
+    generously: five times the usual distance, and four standard deviations."""
+
+    @property
+    def cause(self) -> str:
+        """See `AbstractOutlierRule.cause`."""
+        return "density"
+
+    def find(self, seen: SeenCloud) -> Mask:
+        """See `AbstractOutlierRule.find`."""
+        if len(seen.cloud) == 0:
+            return np.zeros(0, bool)
+        grid = seen.lay_grid(max_jump=self.max_jump)
+        return _stand_alone(grid) | _stand_out(grid)
+
+
+def _stand_alone(grid: ScanGrid) -> Mask:
+    """Find the points that touch no other."""
+    alone = np.ones(len(grid.cloud), bool)
+    here = np.arange(len(alone))
+    for profiles, lines in _SUPPORTS:
+        there = grid.nearest(profiles, lines)
+        touching = grid.touches(here, there, profiles, lines)
+        alone[touching] = False
+        alone[there[touching]] = False
+    return alone
+
+
+def _stand_out(grid: ScanGrid) -> Mask:
+    """Find the points that leave their profile and come back: a spike, not a slope.
+
+    On a slope, however steep, the neighbours on the two sides lie in opposite directions.
+    """
+    here = np.arange(len(grid.cloud))
+    sides: dict[int, list[Indices]] = {-1: [], 1: []}
+    holds = np.zeros(len(here), bool)
+    for side, distance in ((-1, 1), (-1, 2), (1, 1), (1, 2)):
+        there = grid.nearest(0, side * distance)
+        # A spike's neighbours deserve no double allowance for being two scan lines away.
+        holds |= grid.touches(here, there, 0, side)
+        sides[side].append(there)
+    returns = np.zeros(len(here), bool)
+    for left in sides[-1]:
+        for right in sides[1]:
+            returns |= (left != NONE) & (right != NONE) & _same_way(grid, left, right)
+    return returns & ~holds
+
+
+def _same_way(grid: ScanGrid, left: Indices, right: Indices) -> Mask:
+    points = grid.cloud.points
+    return np.einsum("ij,ij->i", points[left] - points, points[right] - points) > 0

@@ -1,0 +1,93 @@
+"""Clouds in every format, told by the suffix."""
+
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
+from pathlib import Path
+
+from ..errors import InputError
+from ..types.cloud import PointCloud
+from .cloud_columns import BLOCK
+from .e57 import import_pye57, iterate_e57, writing_e57
+from .las import import_laspy, iterate_las, writing_las
+from .ply import writing_cloud
+from .ply_foreign import iterate_ply
+from .xyz import iterate_xyz, writing_xyz
+
+CLOUD_SUFFIXES = (".ply", ".las", ".laz", ".e57", ".xyz")
+"""The formats that are read and written."""
+
+_WRITERS: dict[str, Callable[[Path], AbstractContextManager[Callable[[PointCloud], None]]]] = {
+    ".ply": writing_cloud,
+    ".las": writing_las,
+    ".laz": writing_las,
+    ".e57": writing_e57,
+    ".xyz": writing_xyz,
+}
+
+
+def writing_cloud_file(
+    path: Path,
+) -> AbstractContextManager[Callable[[PointCloud], None]]:
+    """Write a cloud block by block, in the format of the suffix.
+
+    The file appears whole when the context ends, or not at all.
+
+    Args:
+        path: The file; its suffix is one of .ply, .las, .laz, .e57 and .xyz.
+
+    Raises:
+        InputError: The suffix is another.
+        MissingDependency: The format needs the extra `[formats]`, which is not installed.
+        DeviceError: The disk is full or cannot be written.
+    """
+    check_cloud_suffix(path)
+    return _WRITERS[path.suffix.lower()](path)
+
+
+def iterate_cloud_file(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud]:
+    """Read a cloud of any of the formats, some points at a time.
+
+    Columns that the file does not have say nothing: no normals, signal 0, posterior 1, sigma 0.
+
+    Args:
+        path: The file; its suffix is one of .ply, .las, .laz, .e57 and .xyz.
+        block: Points at a time, at most.
+
+    Raises:
+        InputError: The suffix is another.
+        FormatError: The file is not what its suffix says, or damaged; memory stays bounded.
+        MissingDependency: The format needs the extra `[formats]`, which is not installed.
+        FileNotFoundError: There is no such file.
+    """
+    check_cloud_suffix(path)
+    suffix = path.suffix.lower()
+    if suffix == ".ply":
+        return iterate_ply(path, block=block)
+    if suffix == ".e57":
+        return iterate_e57(path, block=block)
+    if suffix == ".xyz":
+        return iterate_xyz(path, block=block)
+    return iterate_las(path, block=block)
+
+
+def load_cloud_file(path: Path) -> PointCloud:
+    """Read a whole cloud of any of the formats; see `iterate_cloud_file`."""
+    return PointCloud.concatenate(list(iterate_cloud_file(path)))
+
+
+def check_cloud_suffix(path: Path) -> None:
+    """Refuse now what reading or writing would refuse after an hour of other work.
+
+    Raises:
+        InputError: The suffix is none of a cloud.
+        MissingDependency: The format needs the extra `[formats]`, which is not installed.
+    """
+    suffix = path.suffix.lower()
+    if suffix not in CLOUD_SUFFIXES:
+        raise InputError(
+            f"{path} has no suffix of a cloud; give one of {', '.join(CLOUD_SUFFIXES)}."
+        )
+    if suffix in (".las", ".laz"):
+        import_laspy()
+    if suffix == ".e57":
+        import_pye57()

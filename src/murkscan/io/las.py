@@ -1,0 +1,163 @@
+"""Clouds as LAS and LAZ files, the surveyors' format. Extra `[formats]`."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..errors import FormatError, InputError, MissingDependency
+from ..types.cloud import PointCloud
+from .atomic import replacing
+from .cloud_columns import BLOCK, COLUMNS, as_rows, from_columns, known_name
+from .las_header import check_las_header
+
+if TYPE_CHECKING:
+    from types import ModuleType
+
+_STEP = 1e-5
+"""Step of the coordinates [m]: a tenth of the noise of the best points."""
+_EXTRA = [name for name in COLUMNS.names or () if name not in "xyz"]
+_BRIGHTEST = 65535
+_POINT_FORMAT = 6
+_FAULTS = (ValueError, TypeError, KeyError, IndexError, OverflowError, EOFError, MemoryError)
+"""What laspy lets through of a damaged file, besides its own errors."""
+
+
+@contextmanager
+def writing_las(path: Path) -> Iterator[Callable[[PointCloud], None]]:
+    """Write a cloud block by block, packed where the suffix is .laz.
+
+    Coordinates are in metres, in steps of 0.01 mm from the whole metre next to the first points.
+    What LAS has no field for are extra dimensions with the names of cloud.ply's columns; `signal`
+    is the intensity, too. The file appears whole when the context ends, or not at all.
+
+    Raises:
+        MissingDependency: The extra is not installed.
+        InputError: Points lie farther than 21 km from the first ones, or are not finite.
+        DeviceError: The disk is full or cannot be written.
+    """
+    laspy = import_laspy()
+    header = laspy.LasHeader(point_format=_POINT_FORMAT, version="1.4")
+    header.generating_software = "murkscan"
+    header.scales = np.full(3, _STEP)
+    header.add_extra_dims([laspy.ExtraBytesParams(name, COLUMNS[name]) for name in _EXTRA])
+    is_placed = False
+    with replacing(path) as aside:
+        writer = laspy.open(aside, mode="w", header=header, do_compress=path.suffix == ".laz")
+        with writer:
+
+            def write(cloud: PointCloud) -> None:
+                nonlocal is_placed
+                if len(cloud) == 0:
+                    return
+                _require_finite(cloud, path)
+                if not is_placed:
+                    # laspy writes the header anew when it closes, with this.
+                    writer.header.offsets = np.round(cloud.points.mean(axis=0))
+                    is_placed = True
+                writer.write_points(_as_points(laspy, writer.header, cloud, path))
+
+            yield write
+
+
+def iterate_las(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud]:
+    """Read the points of a LAS or LAZ file, some at a time.
+
+    Raises:
+        MissingDependency: The extra is not installed.
+        FormatError: The file is no such file, or holds fewer points than it says.
+        FileNotFoundError: There is no such file.
+    """
+    laspy = import_laspy()
+    check_las_header(path)
+    with _blaming(laspy, path):
+        # One thread: the others believe the sizes that a file states before they read it.
+        backend = laspy.LazBackend.Lazrs
+        with laspy.open(path, laz_backend=backend, read_evlrs=False) as reader:
+            count = reader.header.point_count
+            for start in range(0, count, block):
+                points = reader.read_points(min(block, count - start))
+                if len(points) < min(block, count - start):
+                    raise FormatError(
+                        f"{path} declares {count} points but holds {start + len(points)}; it is "
+                        "cut off or damaged."
+                    )
+                yield _as_cloud(points)
+
+
+@contextmanager
+def _blaming(laspy: Any, path: Path) -> Iterator[None]:
+    """Turn what goes wrong inside into the file's fault."""
+    import lazrs
+
+    try:
+        yield
+    except (FormatError, InputError):
+        raise
+    except (laspy.LaspyException, lazrs.LazrsError, *_FAULTS) as error:
+        raise FormatError(f"{path} cannot be read as LAS: {_first_line(error)}.") from error
+    except BaseException as error:
+        # What Rust throws when it finds itself in the wrong has no type that can be imported.
+        if type(error).__name__ != "PanicException":
+            raise
+        raise FormatError(f"{path} cannot be read as LAZ: it is damaged.") from error
+
+
+def import_laspy() -> "ModuleType":
+    """Import laspy with what packs LAZ, late: it is an extra.
+
+    Raises:
+        MissingDependency: It is not installed.
+    """
+    try:
+        import laspy
+        import lazrs  # noqa: F401
+    except ImportError as error:
+        raise MissingDependency(
+            'LAS and LAZ need laspy and lazrs: pip install "murkscan[formats]", or ".[formats]" in '
+            "a clone."
+        ) from error
+    return laspy
+
+
+def _as_points(laspy: Any, header: Any, cloud: PointCloud, path: Path) -> Any:
+    steps = np.abs(cloud.points - header.offsets).max() / _STEP
+    if steps > np.iinfo(np.int32).max:
+        raise InputError(
+            f"{path} cannot hold points that lie {steps * _STEP:g} m from the first ones: LAS "
+            "counts in steps. Export to .ply or .e57."
+        )
+    points = laspy.ScaleAwarePointRecord.zeros(len(cloud), header=header)
+    for axis, name in enumerate("xyz"):
+        points[name] = cloud.points[:, axis]
+    rows = as_rows(cloud)
+    for name in _EXTRA:
+        points[name] = rows[name]
+    points["intensity"] = np.clip(np.nan_to_num(cloud.signal), 0, _BRIGHTEST).astype(np.uint16)
+    points["return_number"] = points["number_of_returns"] = np.ones(len(cloud), np.uint8)
+    return points
+
+
+def _as_cloud(points: Any) -> PointCloud:
+    columns: dict[str, np.ndarray] = {}
+    names = [*points.point_format.dimension_names]
+    # The intensity stands first, so that a `signal` of ours comes over it.
+    for name in names:
+        ours = known_name(name)
+        if ours is not None and ours not in "xyz":
+            columns[ours] = np.asarray(points[name])
+    for name in "xyz":
+        columns[name] = np.asarray(points[name], float)
+    return from_columns(columns)
+
+
+def _require_finite(cloud: PointCloud, path: Path) -> None:
+    broken = len(cloud) - int(np.isfinite(cloud.points).all(axis=1).sum())
+    if broken:
+        raise InputError(f"{path} cannot hold the {broken} points that are not finite.")
+
+
+def _first_line(error: BaseException) -> str:
+    return (str(error).strip().splitlines() or [type(error).__name__])[0].rstrip(".")

@@ -1,0 +1,110 @@
+"""Points as text, one a line: what every program reads."""
+
+import re
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from itertools import chain, islice
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.csv as pc
+
+from ..errors import FormatError
+from ..types.cloud import PointCloud
+from .atomic import replacing
+from .cloud_columns import BLOCK, COLUMNS, as_rows, from_columns, known_name
+
+_LONGEST_LINE = 4000
+_UNIT = 1e-3
+"""How far three numbers may be from unit length and still be a normal."""
+_OPTIONS = pc.WriteOptions(include_header=False, delimiter=" ", quoting_style="none")
+
+
+@contextmanager
+def writing_xyz(path: Path) -> Iterator[Callable[[PointCloud], None]]:
+    """Write a cloud block by block: the columns of cloud.ply, named in the first line.
+
+    The line begins with `//`, as CloudCompare has it. The file appears whole when the context
+    ends, or not at all.
+
+    Raises:
+        DeviceError: The disk is full or cannot be written.
+    """
+    with replacing(path) as aside, aside.open("wb") as file:
+        file.write(f"//{' '.join(COLUMNS.names or ())}\n".encode("ascii"))
+
+        def write(cloud: PointCloud) -> None:
+            rows = as_rows(cloud)
+            table = pa.table({name: np.ascontiguousarray(rows[name]) for name in rows.dtype.names})
+            pc.write_csv(table, file, _OPTIONS)
+
+        yield write
+
+
+def iterate_xyz(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud]:
+    """Read points from text: numbers parted by blanks, tabs, commas or semicolons.
+
+    The first line may name the columns, after # or //. Without names the first three are x, y and
+    z [m]; of six, the last three are the normal if they have unit length.
+
+    Raises:
+        FormatError: A line holds something other than as many numbers as the first.
+        FileNotFoundError: There is no such file.
+    """
+    with path.open("rb") as file:
+        lines = _lines(file, path)
+        first = next(lines, "")
+        names = _names(first)
+        if first and not names:
+            lines = chain([first], lines)
+        width = 0
+        while some := list(islice(lines, block)):
+            values = _parse(some, path)
+            width = width or values.shape[1]
+            if values.shape[1] != width or width < 3 or (names and width != len(names)):
+                raise FormatError(
+                    f"{path} has lines of {values.shape[1]} numbers where "
+                    f"{len(names) or max(width, 3)} are expected."
+                )
+            names = names or _guess(values)
+            known = [
+                (known_name(name), column) for name, column in zip(names, values.T, strict=True)
+            ]
+            columns = {name: column for name, column in known if name is not None}
+            if not {"x", "y", "z"} <= columns.keys():
+                raise FormatError(f"{path} names no columns x, y and z in its first line.")
+            yield from_columns(columns)
+
+
+def _lines(file: BinaryIO, path: Path) -> Iterator[str]:
+    """Give the lines that are not empty, with blanks between the numbers."""
+    while line := file.readline(_LONGEST_LINE):
+        if len(line) == _LONGEST_LINE:
+            raise FormatError(f"{path} has a line longer than {_LONGEST_LINE} bytes.")
+        text = line.decode("ascii", "replace").strip()
+        if text:
+            yield re.sub(r"[,;\t]", " ", text)
+
+
+def _names(line: str) -> list[str]:
+    """Give the names of the columns; none where the line holds numbers."""
+    words = line.lstrip("#/ ").split()
+    return words if any(known_name(word) for word in words) else []
+
+
+def _guess(values: np.ndarray) -> list[str]:
+    width = values.shape[1]
+    names = ["x", "y", "z"] + [""] * (width - 3)
+    length = np.linalg.norm(values[:, 3:6], axis=1)
+    if width == 6 and np.mean(np.abs(length - 1) < _UNIT) > 0.5:
+        names[3:] = ["nx", "ny", "nz"]
+    return names
+
+
+def _parse(lines: list[str], path: Path) -> np.ndarray:
+    try:
+        return np.loadtxt(lines, ndmin=2, comments=("#", "//"))
+    except ValueError as error:
+        raise FormatError(f"{path} cannot be read as columns of numbers: {error}.") from error
