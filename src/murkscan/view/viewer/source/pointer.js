@@ -10,7 +10,11 @@ const NEAR = { mouse: 12, pen: 14, touch: 24 };
 export function startPointer(app) {
   const { canvas } = app.stage;
   let down = null;
-  canvas.addEventListener("pointerdown", (event) => { down = event.isPrimary ? event : null; });
+  canvas.addEventListener("pointerdown", (event) => {
+    down = event.isPrimary ? event : null;
+    canvas.classList.add("pointed"); // no ring round what a hand already holds
+  });
+  canvas.addEventListener("blur", () => canvas.classList.remove("pointed"));
   canvas.addEventListener("pointerup", (event) => {
     const is = down && event.button === 0
       && Math.hypot(event.clientX - down.clientX, event.clientY - down.clientY) < STILL;
