@@ -67,6 +67,15 @@ def test_snow_that_is_gone_in_the_next_picture_is_not_taken_for_fields():
     assert find_field_order(runs(pictures)) == "progressive"
 
 
+def test_snow_of_each_field_tells_that_fields_are_apart_but_not_their_order():
+    random = np.random.default_rng(2)
+    pictures = film("progressive", speed=0)
+    for picture in pictures:
+        for row, column in random.integers(0, 560, (200, 2)):
+            picture[row : row + 8 : 2, column : column + 4] = 255
+    assert find_field_order(runs(pictures)) == "interlaced"
+
+
 def test_single_pictures_tell_nothing():
     pictures = film("top-first", 3)
     assert find_field_order([[picture] for picture in pictures]) == "undecided"

@@ -5,15 +5,16 @@ from typing import Literal
 
 import cv2
 import numpy as np
-from jaxtyping import Float32
+from jaxtyping import Float, Float32
 
 from ..types.arrays import Image
 from ..types.frame import Frame
 
 FieldOrder = Literal["progressive", "top-first", "bottom-first"]
 """What a picture is made of; the top field has the even rows 0, 2, 4 …"""
-FieldVerdict = Literal["progressive", "top-first", "bottom-first", "undecided"]
-"""What pictures tell of their fields; undecided where nothing moves."""
+FieldVerdict = Literal["progressive", "top-first", "bottom-first", "interlaced", "undecided"]
+"""What pictures tell of their fields: interlaced where only their order is unknown, undecided where
+nothing moves."""
 
 _SCALES = (4, 8, 16)
 """Sizes of the cells over which a field is averaged, in pixels of the full picture."""
@@ -33,7 +34,13 @@ _APART = 0.1
 _AGREEMENT = 0.8
 """Share of the runs that move, from which they say the same."""
 
+_SPOTTY = 10.0
+"""Fourth powers of differences over the square of their squares, from which they are spots."""
+_FRESH = 0.5
+"""Share of what changes to the next picture that changes between fields, where spots are snow."""
+
 Field = Float32[np.ndarray, "_ _"]
+Sums = Float[np.ndarray, "pairs 4"]
 
 
 def split_fields(
@@ -88,6 +95,7 @@ def find_field_order(runs: Iterable[Sequence[Image]]) -> FieldVerdict:
     """
     motion, lean = [np.zeros((2, len(_SCALES)))], [np.zeros((2, len(_SCALES)))]
     sums = np.zeros((3, len(_SCALES)))
+    snow = [np.zeros((0, 4))]
     for run in runs:
         motion.append(np.zeros_like(motion[0]))
         lean.append(np.zeros_like(lean[0]))
@@ -99,8 +107,34 @@ def find_field_order(runs: Iterable[Sequence[Image]]) -> FieldVerdict:
                 motion[-1][:, scale] += _sums(b + c - 2 * a)
                 lean[-1][:, scale] += _sums(c - b)
                 sums[:, scale] += float(a.sum()), float(b.sum()), float(c.sum())
+            if previous:
+                snow.append(_look_for_snow(previous[0], current[0]))
             previous = current
-    return _judge(np.array(motion), np.array(lean), sums)
+    verdict = _judge(np.array(motion), np.array(lean), sums)
+    return "interlaced" if verdict == "undecided" and _is_snow(np.concatenate(snow)) else verdict
+
+
+def _look_for_snow(old: tuple[Field, Field], new: tuple[Field, Field]) -> Sums:
+    """Give means of fourth powers of T0 - B0, B0 - T1 and T0 - T1, and of squares of T0 - B0."""
+    a, b, d = _differences((old, (old[1], new[0]), (old[0], new[0])))
+    return np.array([[a.mean(), b.mean(), d.mean(), np.sqrt(a).mean()]])
+
+
+def _is_snow(means: Sums) -> bool:
+    """Tell whether each field has spots of its own, as particles have that two exposures see.
+
+    In a progressive picture both fields share them, and what stands still is in the next picture,
+    too. Mere noise has no spots: the fourth powers of its differences are 3 times their squares'.
+    """
+    if len(means) == 0:
+        return False
+    here, next_field, next_picture, _ = means.sum(axis=0)
+    spots = np.median(means[:, 0] / (means[:, 3] ** 2 + 1e-9))
+    is_apart, is_gone = (
+        here >= _FRESH * max(next_field, next_picture),
+        next_picture >= _FRESH * here,
+    )
+    return bool(spots > _SPOTTY and is_apart and is_gone)
 
 
 def _shrink_fields(image: Image) -> list[tuple[Field, Field]]:

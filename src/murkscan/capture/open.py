@@ -16,7 +16,7 @@ from ..types.arrays import Image
 from .base import AbstractRecording, spread_evenly
 from .clock import Clock, usual_spacing
 from .decode import Picture, decode_pictures, grey_from_video, open_video, picture_time
-from .fields import FieldOrder, find_field_order
+from .fields import FieldOrder, FieldVerdict, find_field_order
 from .folder import TIMES, ImageFolder, is_picture, list_pictures, read_grey
 from .seek import read_runs
 from .video import Video
@@ -144,14 +144,18 @@ def _decide(
     runs: Callable[[int], Iterable[Sequence[Image]]],
     flag: FieldOrder = "progressive",
 ) -> FieldOrder:
-    """Take what the user says; else what the pictures tell; else, where nothing moves, the flag."""
+    """Take what the user says; else what the pictures tell; else, where nothing moves, the flag.
+
+    Fields of an order that nothing tells are taken as the flag says, or top first, as PAL has them.
+    """
     if fields != "auto":
         return fields
+    verdict: FieldVerdict = "undecided"
     for count in _RUNS:
         verdict = find_field_order(runs(count))
-        if verdict != "undecided":
+        if verdict not in ("undecided", "interlaced"):
             return verdict
-    return flag
+    return "top-first" if verdict == "interlaced" and flag == "progressive" else flag
 
 
 def _open_video(path: Path, wavelength: float, fps: float | None, fields: Fields) -> Video:
