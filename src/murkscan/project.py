@@ -4,7 +4,8 @@ import hashlib
 import json
 import shutil
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -16,9 +17,9 @@ from .errors import FormatError, InputError, MissingResult
 from .io.images import write_image
 from .io.json_files import load_json, save_json
 from .io.mesh_files import load_mesh, save_mesh
-from .io.mlp import save_frames
+from .io.mlp import writing_frames
 from .io.parquet import load_profile, load_stripe, save_profile, save_stripe
-from .io.ply import load_cloud, save_cloud
+from .io.ply import iterate_cloud, load_cloud, writing_cloud
 from .io.poses import load_poses, save_poses
 from .io.text import save_text
 from .types.arrays import ColourImage
@@ -255,17 +256,21 @@ class Project:
         """Read the poses of a finished motion."""
         return load_poses(self.finished("motion").folder / "trajectory.csv")
 
-    def save_cloud(self, cloud: PointCloud) -> None:
-        """Write cloud/cloud.ply."""
-        save_cloud(self.root / "cloud/cloud.ply", cloud)
+    def writing_cloud(self) -> AbstractContextManager[Callable[[PointCloud], None]]:
+        """Write cloud/cloud.ply block by block."""
+        return writing_cloud(self.root / "cloud/cloud.ply")
 
-    def save_frames(self, cloud: PointCloud) -> None:
+    def writing_frames(self) -> AbstractContextManager[Callable[[PointCloud], None]]:
         """Write one cloud a frame, cloud/frames/*.ply, and cloud/frames.mlp that opens them all."""
-        save_frames(self.root / "cloud", cloud)
+        return writing_frames(self.root / "cloud")
 
     def load_cloud(self) -> PointCloud:
         """Read the cloud of a finished cloud stage."""
         return load_cloud(self.finished("cloud").folder / "cloud.ply")
+
+    def iterate_cloud(self) -> Iterator[PointCloud]:
+        """Read the cloud of a finished cloud stage, some points at a time."""
+        return iterate_cloud(self.finished("cloud").folder / "cloud.ply")
 
     def save_mesh(self, mesh: Mesh) -> None:
         """Write mesh/mesh.ply, .stl and .glb."""

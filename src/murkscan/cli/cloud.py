@@ -1,29 +1,63 @@
-"""murkscan cloud: merge the profiles."""
+"""murkscan cloud: merge the profiles, and write the cloud in other formats."""
 
 from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
 
+from ..errors import InputError
 from .progress import progress_bars
 
 
-def cloud(out: Path, *, frames: Annotated[bool, Parameter(negative=())] = False) -> None:
+def cloud(
+    out: Path,
+    *,
+    export: Annotated[tuple[Path, ...], Parameter(negative=())] = (),
+    voxel_mm: float | None = None,
+    min_posterior: float = 0.5,
+    frames: Annotated[bool, Parameter(negative=())] = False,
+) -> None:
     """Merge the profiles of a scan into one cloud of points.
+
+    A cloud that `murkscan merge` has made is not made again, only exported.
 
     Parameters
     ----------
     out
         Folder of the scan, with finished triangulate and motion stages.
+    export
+        Write the cloud to this file, too: .ply, .las, .laz, .e57 or .xyz; may be given again.
+    voxel_mm
+        Thin what is exported to one point a voxel of this edge [mm]: means, weighted by sigma.
+    min_posterior
+        Take out points less probable than this to be the surface.
     frames
         Write one cloud a frame for more than 500 frames, too.
     """
+    from ..cloud import Doubtful, SeenThrough, Sparse
     from ..project import Project
     from ..survey.cloud import build_cloud
+    from ..survey.export import check_export, export_cloud
+    from ..survey.merge import is_merged
     from ..survey.scan_rig import load_scan_rig
     from .summary import print_result
 
+    if voxel_mm is not None and not export:
+        raise InputError("--voxel-mm thins what is exported; say where to with --export FILE.")
+    if voxel_mm is not None and not voxel_mm > 0:
+        raise InputError(f"--voxel-mm must be above 0, got {voxel_mm:g}.")
     project = Project(out)
+    for path in export:
+        check_export(project, path)
+    rules = (Doubtful(min_posterior), Sparse(), SeenThrough())
     with progress_bars() as progress:
-        result = build_cloud(project, load_scan_rig(project), frames=frames, progress=progress)
+        if is_merged(project):
+            result = project.finished("cloud").counts()
+        else:
+            rig = load_scan_rig(project)
+            result = build_cloud(project, rig, rules=rules, frames=frames, progress=progress)
+        voxel = None if voxel_mm is None else voxel_mm / 1e3
+        written = [export_cloud(project, path, voxel=voxel, progress=progress) for path in export]
     print_result("cloud", result, out / "cloud")
+    for path, count in zip(export, written, strict=True):
+        print(f"export: points {count:,}; {path}")

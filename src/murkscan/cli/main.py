@@ -18,6 +18,7 @@ _COMMANDS = {
     "triangulate": "Turn stripes into profiles in the camera's frame.",
     "motion": "Find where the camera was in each frame.",
     "cloud": "Merge the profiles into one cloud of points.",
+    "merge": "Lay several scans of one object on another, as one cloud.",
     "mesh": "Make a surface from the cloud.",
     "measure": "Take measures of a scan, each with its uncertainty.",
     "view": "Draw pictures of the surface.",

@@ -1,6 +1,8 @@
 """The paper's way: one small cloud a frame, and a MeshLab project that opens them together."""
 
 import re
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -28,16 +30,33 @@ def save_frames(folder: Path, cloud: PointCloud) -> Path:
     Raises:
         DeviceError: The disk is full or cannot be written.
     """
-    order = np.argsort(cloud.frame, kind="stable")
-    numbers, starts = np.unique(cloud.frame[order], return_index=True)
-    paths = [folder / "frames" / f"frame_{number:06d}.ply" for number in numbers]
-    for path, which in zip(paths, np.split(order, starts[1:]), strict=False):
-        save_cloud(path, cloud[which])
+    with writing_frames(folder) as write:
+        write(cloud)
+    return folder / "frames.mlp"
+
+
+@contextmanager
+def writing_frames(folder: Path) -> Iterator[Callable[[PointCloud], None]]:
+    """Write as `save_frames` does, a cloud that comes in blocks; a frame lies in one of them.
+
+    Raises:
+        DeviceError: The disk is full or cannot be written.
+    """
+    paths: list[Path] = []
+
+    def write(cloud: PointCloud) -> None:
+        order = np.argsort(cloud.frame, kind="stable")
+        numbers, starts = np.unique(cloud.frame[order], return_index=True)
+        some = [folder / "frames" / f"frame_{number:06d}.ply" for number in numbers]
+        for path, which in zip(some, np.split(order, starts[1:]), strict=False):
+            save_cloud(path, cloud[which])
+        paths.extend(some)
+
+    yield write
     for stale in set((folder / "frames").glob("frame_*.ply")) - set(paths):
         if _OURS.fullmatch(stale.name):
             stale.unlink()
     save_project(folder / "frames.mlp", paths)
-    return folder / "frames.mlp"
 
 
 def save_project(path: Path, meshes: list[Path]) -> None:

@@ -1,13 +1,22 @@
-"""Merge a scan's profiles into one cloud."""
+"""Merge a scan's profiles into one cloud, block by block."""
 
 import time
+from collections import Counter
+from collections.abc import Sequence
+from contextlib import ExitStack
 from dataclasses import replace
 from typing import Any
 
-from ..cloud import merge_profiles, remove_outliers
+import numpy as np
+
+from ..cloud import OUTLIER_RULES, AbstractOutlierRule, SeenCloud, find_outliers, merge_profiles
 from ..project import Project
+from ..types.cloud import PointCloud
+from ..types.laser import Axis
 from ..types.rig import Rig
+from ..types.trajectory import Trajectory
 from .common_part import moving_rig, spread_common
+from .profile_blocks import BLOCK, ProfileBlock, cut_blocks
 from .progress import Progress, silent
 from .settings import describe
 
@@ -16,18 +25,26 @@ FRAME_FILES = 500
 
 
 def build_cloud(
-    project: Project, rig: Rig, *, frames: bool = False, progress: Progress = silent
+    project: Project,
+    rig: Rig,
+    *,
+    rules: Sequence[AbstractOutlierRule] = OUTLIER_RULES,
+    frames: bool = False,
+    block: int = BLOCK,
+    progress: Progress = silent,
 ) -> dict[str, Any]:
-    """Run the cloud stage.
+    """Run the cloud stage; a scan that does not fit into memory is worked on in blocks.
 
     Args:
         project: A scan with finished triangulate and motion stages.
         rig: Its rig.
+        rules: The reasons not to believe a point.
         frames: Whether to write one cloud a frame for more than 500 frames, too.
-        progress: Told when it begins and when it is done.
+        block: Points that are worked on at once, about.
+        progress: Told how many blocks are done.
 
     Returns:
-        Counts: points, and outliers that were taken out.
+        Counts: points, outliers that were taken out, and how many of them for each cause.
 
     Raises:
         MissingResult: An earlier stage has not been finished.
@@ -37,23 +54,49 @@ def build_cloud(
     rig = moving_rig(project, rig)
     stage = project.stage(
         "cloud",
-        settings={"frames": frames},
+        settings={"frames": frames, "rules": describe(tuple(rules))},
         inputs=inputs | {"covariance": describe(rig.covariance)},
     )
     if (result := stage.result()) is not None:
         return result
     since = time.monotonic()
     stage.begin()
-    progress("cloud", 0, None)
-    profile, trajectory = project.load_profile(), project.load_trajectory()
-    laser = project.finished("extract").key["settings"]["laser"]
-    merged = merge_profiles(profile, trajectory, axis=rig.lasers[laser].axis)
-    merged = replace(merged, sigma_common=spread_common(profile, rig))
-    cloud = remove_outliers(merged)
-    project.save_cloud(cloud)
-    if frames or project.finished("extract").counts()["frames"] <= FRAME_FILES:
-        project.save_frames(cloud)
-    result = {"points": len(cloud), "outliers": len(merged) - len(cloud)}
+    trajectory = project.load_trajectory()
+    axis = rig.lasers[project.finished("extract").key["settings"]["laser"]].axis
+    blocks = cut_blocks(project.load_profile_parts(), block=block)
+    in_files = frames or project.finished("extract").counts()["frames"] <= FRAME_FILES
+    found: Counter[str] = Counter({rule.cause: 0 for rule in rules})
+    points = 0
+    with ExitStack() as stack:
+        write = [stack.enter_context(project.writing_cloud())]
+        if in_files:
+            write.append(stack.enter_context(project.writing_frames()))
+        for done, one in enumerate(blocks):
+            progress("cloud", done, None)
+            cloud, causes = _merge(one, trajectory, rig, axis, rules)
+            for save in write:
+                save(cloud)
+            points += len(cloud)
+            found.update(causes)
+    result = {"points": points, "outliers": found.total()}
+    result |= {f"outliers_by_{cause}": count for cause, count in found.items()}
     stage.finish(result, since=since)
     progress("cloud", 1, 1)
     return result
+
+
+def _merge(
+    block: ProfileBlock,
+    trajectory: Trajectory,
+    rig: Rig,
+    axis: Axis,
+    rules: Sequence[AbstractOutlierRule],
+) -> tuple[PointCloud, dict[str, int]]:
+    """Give a block's points, and count what was taken out of it."""
+    profile, is_body = block.profile, block.is_body
+    cloud = merge_profiles(profile, trajectory, axis=axis)
+    cameras = trajectory.transform(np.zeros_like(profile.points), profile.time)
+    found = find_outliers(SeenCloud(cloud, cameras), rules)
+    kept = is_body & ~np.any([*found.values(), np.zeros(len(cloud), bool)], axis=0)
+    kept_cloud = replace(cloud[kept], sigma_common=spread_common(profile[kept], rig))
+    return kept_cloud, {cause: int((which & is_body).sum()) for cause, which in found.items()}

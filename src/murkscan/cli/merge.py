@@ -1,0 +1,59 @@
+"""murkscan merge: several passes, or clouds of others, into one cloud."""
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from ..errors import InputError
+from .progress import progress_bars
+
+
+def merge(
+    *passes: Path,
+    out: Path,
+    reach_mm: float | None = None,
+    voxel_mm: float | None = None,
+    as_logged: Annotated[bool, Parameter(negative=())] = False,
+) -> None:
+    """Lay several scans of one object on another and merge them into one cloud.
+
+    Each pass is laid on those before it where they overlap; the first stays where it is. What the
+    overlap does not determine (a plain hull slides along itself) is named, and stays as logged.
+    Then mesh, measure and view work on the result.
+
+    Parameters
+    ----------
+    passes
+        Folders of scans, or clouds as .ply, .las, .laz, .e57 or .xyz in metres. One alone is
+        imported.
+    out
+        A new folder for the merged cloud.
+    reach_mm
+        Distance up to which the surface of one pass is looked for in another [mm]; a twentieth of
+        the smaller one's size unless said.
+    voxel_mm
+        Thin the merged cloud to one point a voxel of this edge [mm]: means, weighted by sigma.
+    as_logged
+        Move nothing: the poses of all passes are in one frame already, and good enough.
+    """
+    from ..survey.merge import merge_passes
+    from .summary import print_result
+
+    if not passes:
+        raise InputError("Give the folders of two scans or more: murkscan merge A B --out OUT.")
+    for flag, value in (("--reach-mm", reach_mm), ("--voxel-mm", voxel_mm)):
+        if value is not None and not value > 0:
+            raise InputError(f"{flag} must be above 0, got {value:g}.")
+    with progress_bars() as progress:
+        result = merge_passes(
+            passes,
+            out,
+            align=not as_logged,
+            reach=None if reach_mm is None else reach_mm / 1e3,
+            voxel=None if voxel_mm is None else voxel_mm / 1e3,
+            progress=progress,
+        )
+    for one in result["passes"]:
+        print(f"{one['path']}: {one['words']}")
+    print_result("merge", result, out / "cloud")

@@ -1,0 +1,63 @@
+"""An alignment in words for the terminal, and in numbers for stage.json."""
+
+from typing import Any
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from ..geometry.alignment import Alignment
+
+
+def describe_alignment(alignment: Alignment | None) -> str:
+    """Say how a pass was moved, how well that is known, and what stays open."""
+    if alignment is None:
+        return "stays where it is"
+    shift, turn = _motion(alignment)
+    sigma = np.sqrt(np.diag(alignment.covariance))
+    words = (
+        f"moved {_three(shift * 1e3)} ± {_three(sigma[3:] * 1e3)} mm along x, y, z and turned "
+        f"{_three(np.degrees(turn), 4)} ± {_three(np.degrees(sigma[:3]), 4)} deg about them; "
+        f"{alignment.overlap:.0%} of it overlaps, {alignment.rms * 1e3:.2f} mm RMS apart"
+    )
+    if alignment.open_directions:
+        words += f"; open, so as logged: {', '.join(map(str, alignment.open_directions))}"
+    return words
+
+
+def alignment_as_json(alignment: Alignment | None) -> dict[str, Any] | None:
+    """Give an alignment as plain values; None for the pass that stays."""
+    if alignment is None:
+        return None
+    shift, turn = _motion(alignment)
+    pose = alignment.target_from_source
+    return {
+        "rotation": pose.rotation.tolist(),
+        "translation_m": pose.translation.tolist(),
+        "centre_m": alignment.centre.tolist(),
+        "shift_of_centre_m": shift.tolist(),
+        "turn_rad": turn.tolist(),
+        "covariance_of_turn_and_shift": alignment.covariance.tolist(),
+        "open": [
+            {
+                "words": str(direction),
+                "axis": direction.axis.tolist(),
+                "through_m": direction.through.tolist(),
+            }
+            for direction in alignment.open_directions
+        ],
+        "overlap": alignment.overlap,
+        "matches": alignment.num_matches,
+        "rms_m": alignment.rms,
+    }
+
+
+def _motion(alignment: Alignment) -> tuple[np.ndarray, np.ndarray]:
+    """Give how far the middle of the overlap moves [m], and the turn about it [rad]."""
+    correction = alignment.correction
+    before = correction.inverse() @ alignment.centre[None]
+    turn = Rotation.from_matrix(correction.rotation).as_rotvec()
+    return alignment.centre - before[0], turn
+
+
+def _three(numbers: np.ndarray, digits: int = 2) -> str:
+    return "(" + ", ".join(f"{number:.{digits}f}" for number in numbers + 0.0) + ")"

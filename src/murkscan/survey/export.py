@@ -1,0 +1,72 @@
+"""Write a scan's cloud in another format, in streams."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from ..cloud import thin_clouds
+from ..errors import InputError
+from ..io.cloud_files import check_cloud_suffix, writing_cloud_file
+from ..project import Project
+from ..types.cloud import PointCloud
+from .progress import Progress, silent
+
+
+def export_cloud(
+    project: Project, path: Path, *, voxel: float | None = None, progress: Progress = silent
+) -> int:
+    """Write the cloud of a scan to a file, with bounded memory.
+
+    Args:
+        project: A scan with a finished cloud stage.
+        path: The file; its suffix is one of .ply, .las, .laz, .e57 and .xyz.
+        voxel: Edge of the voxels to thin to [m]; None writes all points.
+        progress: Told how many points are written.
+
+    Returns:
+        The number of points written.
+
+    Raises:
+        MissingResult: The cloud stage has not been finished.
+        InputError: The suffix is no cloud's, the cloud is empty, or the file lies in the stage's
+            own folder.
+        MissingDependency: The format needs the extra `[formats]`, which is not installed.
+        DeviceError: The disk is full.
+    """
+    stage = project.finished("cloud")
+    count = stage.counts()["points"]
+    check_export(project, path)
+    if count == 0:
+        raise InputError(f"The cloud of {project.root} has no points; there is nothing to export.")
+    blocks = _Blocks(project)
+    written = 0
+    with writing_cloud_file(path) as write:
+        for block in blocks if voxel is None else thin_clouds(blocks, voxel):
+            write(block)
+            written += len(block)
+            progress("export", written, count if voxel is None else None)
+    progress("export", written, written)
+    return written
+
+
+def check_export(project: Project, path: Path) -> None:
+    """Refuse now what `export_cloud` would refuse after an hour of other work.
+
+    Raises:
+        InputError: The suffix is no cloud's, or the file lies in the stage's own folder.
+        MissingDependency: The format needs the extra `[formats]`, which is not installed.
+    """
+    check_cloud_suffix(path)
+    if (project.root / "cloud").resolve() in path.resolve().parents:
+        raise InputError(
+            f"{path} lies among the files of the cloud stage; export to another folder."
+        )
+
+
+class _Blocks:
+    """The blocks of a scan's cloud; they can be gone through again."""
+
+    def __init__(self, project: Project) -> None:
+        self._project = project
+
+    def __iter__(self) -> Iterator[PointCloud]:
+        return self._project.iterate_cloud()

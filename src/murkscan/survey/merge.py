@@ -1,0 +1,212 @@
+"""Lay passes over one object on another, and merge them into one cloud."""
+
+import platform
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..cloud import thin_clouds
+from ..errors import Degenerate, FormatError, InputError, MissingResult
+from ..geometry.alignment import Alignment, align_clouds
+from ..io.cloud_files import check_cloud_suffix, iterate_cloud_file
+from ..project import Project
+from ..types.cloud import PointCloud
+from ..types.pose import Pose
+from .alignment_words import alignment_as_json, describe_alignment
+from .progress import Progress, silent
+
+_SAMPLE = 2_000_000
+"""Points of a pass, about, that alignment looks at."""
+_GAP = 1000
+"""Frame numbers between two passes, so that none of their profiles count as neighbours."""
+
+
+@dataclass(frozen=True)
+class Pass:
+    """One scan, or a cloud of somebody else."""
+
+    path: Path
+
+    def __iter__(self) -> Iterator[PointCloud]:
+        """Give its points in blocks; points that are not finite are left out."""
+        blocks = (
+            Project(self.path).iterate_cloud()
+            if self.path.is_dir()
+            else iterate_cloud_file(self.path)
+        )
+        for block in blocks:
+            yield block[np.isfinite(block.points).all(axis=1)]
+
+    def count(self) -> int:
+        """Count its points.
+
+        Raises:
+            MissingResult: There is no such folder or file, or it has no finished cloud.
+            InputError: It has no points.
+        """
+        if not self.path.exists():
+            raise MissingResult(f"{self.path} does not exist; give a scan's folder or a cloud.")
+        if not self.path.is_dir():
+            check_cloud_suffix(self.path)
+        count = sum(map(len, self))
+        if count == 0:
+            raise InputError(f"{self.path} has no points; leave it out.")
+        return count
+
+
+def merge_passes(
+    paths: Sequence[Path],
+    out: Path,
+    *,
+    align: bool = True,
+    reach: float | None = None,
+    voxel: float | None = None,
+    progress: Progress = silent,
+) -> dict[str, Any]:
+    """Make one cloud of several, in the frame of the first.
+
+    Args:
+        paths: Folders of scans with finished clouds, or files of clouds; at least one.
+        out: A new folder, which becomes a project with a finished cloud stage.
+        align: Whether to correct where the passes lie; otherwise they stay as logged.
+        reach: Distance up to which surfaces are looked for in each other's place [m].
+        voxel: Edge of the voxels to thin the result to [m]; None keeps all points.
+        progress: Told how many passes are aligned.
+
+    Returns:
+        points, and passes: for each its path, frames, correction and words for it.
+
+    Raises:
+        InputError: out is no new folder, or a pass is empty.
+        MissingResult: A pass does not exist, or has no finished cloud.
+        FormatError: A file is damaged.
+        Degenerate: A pass overlaps none of the others.
+        DeviceError: The disk is full.
+    """
+    passes = [Pass(path) for path in paths]
+    project = Project(out)
+    project.check_writable()
+    if (out / "scan.json").exists() and not is_merged(project):
+        raise InputError(f"{out} holds a scan; give a new folder for the merged cloud with --out.")
+    if out.resolve() in [path.resolve() for path in paths]:
+        raise InputError(f"{out} is one of the passes; give a new folder with --out.")
+    since = time.monotonic()
+    counts = [one.count() for one in passes]
+    aligned = _align_all(passes, counts, reach, progress) if align else [None] * len(passes)
+    told, moved = _place(passes, aligned)
+    project.save_scan(_record(paths))
+    settings = {"align": align, "reach": reach, "voxel": voxel}
+    inputs = {"passes": [[str(one.path), count] for one, count in zip(passes, counts, strict=True)]}
+    stage = project.stage("cloud", settings=settings, inputs=inputs)
+    stage.begin()
+    points = 0
+    with project.writing_cloud() as write:
+        for block in moved if voxel is None else thin_clouds(moved, voxel):
+            write(block)
+            points += len(block)
+    result = {"points": points, "outliers": 0, "passes": told}
+    stage.finish(result, since=since)
+    return result
+
+
+def is_merged(project: Project) -> bool:
+    """Tell whether a project's cloud was merged from others, so that no stage can make it anew."""
+    with suppress(MissingResult, FormatError):
+        return "merged" in project.load_scan()
+    return False
+
+
+def _record(paths: Sequence[Path]) -> dict[str, Any]:
+    """Give what scan.json says of a merged cloud: it has no recording and no rig of its own."""
+    versions = {name: version(name) for name in ("murkscan", "numpy", "scipy", "small-gicp")}
+    return {
+        "format": 1,
+        "versions": versions | {"python": platform.python_version()},
+        "merged": [str(path) for path in paths],
+        "recording": {},
+        "rig": {},
+    }
+
+
+@dataclass(frozen=True)
+class _Moved:
+    """All passes, in the frame of the first; they can be gone through again."""
+
+    passes: Sequence[Pass]
+    poses: Sequence[Pose]
+    first_frames: Sequence[int]
+
+    def __iter__(self) -> Iterator[PointCloud]:
+        for one, pose, first in zip(self.passes, self.poses, self.first_frames, strict=True):
+            for block in one:
+                yield replace(
+                    block,
+                    points=pose @ block.points,
+                    normals=(block.normals @ pose.rotation.T).astype(np.float32),
+                    frame=block.frame + np.int32(first),
+                )
+
+
+def _place(
+    passes: Sequence[Pass], aligned: Sequence[Alignment | None]
+) -> tuple[list[dict[str, Any]], _Moved]:
+    told, first_frames, following = [], [], 0
+    for one, alignment in zip(passes, aligned, strict=True):
+        frames = [(int(b.frame.min()), int(b.frame.max())) for b in one if len(b)]
+        low, high = min(low for low, _ in frames), max(high for _, high in frames)
+        first_frames.append(following - low)
+        told.append(
+            {
+                "path": str(one.path),
+                "frames": [following, following + high - low],
+                "words": describe_alignment(alignment),
+                "alignment": alignment_as_json(alignment),
+            }
+        )
+        following += high - low + _GAP
+    poses = [Pose.identity() if a is None else a.target_from_source for a in aligned]
+    return told, _Moved(passes, poses, first_frames)
+
+
+def _align_all(
+    passes: Sequence[Pass], counts: Sequence[int], reach: float | None, progress: Progress
+) -> list[Alignment | None]:
+    """Lay each pass on what is in place; one that does not overlap yet waits for others."""
+    found: dict[int, Alignment | None] = {0: None}
+    placed = _sample(passes[0], counts[0])
+    waiting = list(range(1, len(passes)))
+    progress("align", 1, len(passes))
+    while waiting:
+        refusal: Degenerate | None = None
+        for number in waiting:
+            source = _sample(passes[number], counts[number])
+            try:
+                alignment = align_clouds(source, placed, reach=reach)
+            except Degenerate as error:
+                refusal = error
+                continue
+            found[number] = alignment
+            pose = alignment.target_from_source
+            source = replace(
+                source,
+                points=pose @ source.points,
+                normals=(source.normals @ pose.rotation.T).astype(np.float32),
+            )
+            placed = PointCloud.concatenate([placed, source])
+            waiting.remove(number)
+            progress("align", len(found), len(passes))
+            break
+        else:
+            raise Degenerate(f"{passes[waiting[-1]].path}: {refusal}") from refusal
+    return [found[number] for number in range(len(passes))]
+
+
+def _sample(one: Pass, count: int) -> PointCloud:
+    step = max(count // _SAMPLE, 1)
+    return PointCloud.concatenate([block[::step] for block in one])
