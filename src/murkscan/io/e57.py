@@ -131,6 +131,8 @@ def _add_scan(lib: Any, file: Any) -> Any:
 
 def _read_scan(lib: Any, file: Any, number: int, path: Path, block: int) -> Iterator[PointCloud]:
     header = file.get_header(number)
+    if header.point_count == 0:
+        return
     there = list(header.point_fields)
     is_placed = all(name in there for name in _PLACE)
     place = tuple(_PLACE) if is_placed else _SPHERE

@@ -1,0 +1,241 @@
+"""Clouds in every format: what comes back, what others wrote, what is refused."""
+
+import struct
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from murkscan.errors import FormatError, InputError
+from murkscan.io.cloud_files import (
+    CLOUD_SUFFIXES,
+    iterate_cloud_file,
+    load_cloud_file,
+    writing_cloud_file,
+)
+from murkscan.types.cloud import PointCloud
+
+SCALARS = ("signal", "posterior", "sigma", "sigma_common", "frame", "scan_line", "laser")
+
+
+def some_cloud(count=1000, seed=0):
+    random = np.random.default_rng(seed)
+    normals = random.normal(size=(count, 3))
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    return PointCloud(
+        random.normal([100, -20, 3], size=(count, 3)),
+        normals.astype(np.float32),
+        *(random.random(count).astype(np.float32) * scale for scale in (250, 1, 3e-4, 2e-4)),
+        random.integers(0, 100_000, count).astype(np.int32),
+        random.integers(0, 2000, count).astype(np.int32),
+        random.integers(0, 3, count).astype(np.uint8),
+    )
+
+
+def save(path, *clouds):
+    with writing_cloud_file(path) as write:
+        for cloud in clouds:
+            write(cloud)
+
+
+@pytest.mark.parametrize("suffix", CLOUD_SUFFIXES)
+def test_every_column_comes_back_from_every_format(tmp_path, suffix):
+    first, second = some_cloud(1000, 0), some_cloud(700, 1)
+    save(tmp_path / f"cloud{suffix}", first, second)
+    back = load_cloud_file(tmp_path / f"cloud{suffix}")
+    whole = PointCloud.concatenate([first, second])
+    # LAS counts in steps of 0.01 mm; a rounded one is off by half, and by 1e-13 of the product.
+    step = 0.5e-5 if suffix in (".las", ".laz") else 0.0
+    np.testing.assert_allclose(back.points, whole.points, rtol=0, atol=step * 1.001)
+    np.testing.assert_array_equal(back.normals, whole.normals, strict=True)
+    for name in SCALARS:
+        np.testing.assert_array_equal(getattr(back, name), getattr(whole, name), strict=True)
+
+
+@pytest.mark.parametrize("suffix", CLOUD_SUFFIXES)
+@pytest.mark.parametrize("block", [1, 7, 64])
+def test_a_file_read_in_blocks_is_the_whole_file(tmp_path, suffix, block):
+    path = tmp_path / f"cloud{suffix}"
+    save(path, some_cloud(64))
+    blocks = list(iterate_cloud_file(path, block=block))
+    assert max(map(len, blocks)) <= block
+    np.testing.assert_array_equal(
+        PointCloud.concatenate(blocks).points, load_cloud_file(path).points
+    )
+
+
+@pytest.mark.parametrize("suffix", CLOUD_SUFFIXES)
+def test_a_cloud_without_points_comes_back(tmp_path, suffix):
+    save(tmp_path / f"cloud{suffix}")
+    assert len(load_cloud_file(tmp_path / f"cloud{suffix}")) == 0
+
+
+@pytest.mark.parametrize("suffix", CLOUD_SUFFIXES)
+def test_a_failed_export_leaves_nothing(tmp_path, suffix):
+    def fail():
+        with writing_cloud_file(tmp_path / f"cloud{suffix}") as write:
+            write(some_cloud(10))
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        fail()
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("suffix", [".las", ".laz"])
+def test_what_las_cannot_hold_is_refused(tmp_path, suffix):
+    far, broken = some_cloud(10), some_cloud(10)
+    far.points[3] += 1e6
+    broken.points[3] = np.nan
+    with pytest.raises(InputError, match="steps"):
+        save(tmp_path / f"cloud{suffix}", some_cloud(10), far)
+    with pytest.raises(InputError, match="1 points that are not finite"):
+        save(tmp_path / f"cloud{suffix}", broken)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_another_suffix_is_refused_with_those_that_there_are(tmp_path):
+    with pytest.raises(InputError, match=r"cloud\.pcd .* \.ply, \.las, \.laz, \.e57, \.xyz"):
+        load_cloud_file(tmp_path / "cloud.pcd")
+
+
+HEADERS = {
+    "text": "format ascii 1.0",
+    "big": "format binary_big_endian 1.0",
+    "little": "format binary_little_endian 1.0",
+}
+
+
+@pytest.mark.parametrize("kind", HEADERS)
+def test_a_ply_file_of_another_program_is_read(tmp_path, kind):
+    """With single precision, colours, MeshLab's and CloudCompare's names, and faces behind."""
+    header = (
+        f"ply\n{HEADERS[kind]}\ncomment by others\nelement vertex 2\nproperty float x\n"
+        "property float y\nproperty float z\nproperty uchar red\nproperty float scalar_sigma\n"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    )
+    rows = [(1.5, 2.5, -3.25, 7, 0.125), (4.0, 5.0, 6.0, 8, 0.25)]
+    order = ">" if kind == "big" else "<"
+    body = (
+        "".join(" ".join(map(str, row)) + "\n" for row in rows).encode() + b"3 0 1 0\n"
+        if kind == "text"
+        else b"".join(struct.pack(order + "fffBf", *row) for row in rows) + b"\x03" + bytes(12)
+    )
+    (tmp_path / "other.ply").write_bytes(header.encode() + body)
+    cloud = load_cloud_file(tmp_path / "other.ply")
+    np.testing.assert_array_equal(cloud.points, [[1.5, 2.5, -3.25], [4, 5, 6]])
+    np.testing.assert_array_equal(cloud.sigma, np.float32([0.125, 0.25]))
+    # What the file does not say: no normals, certain, of no frame.
+    assert not cloud.normals.any()
+    assert cloud.posterior.tolist() == [1, 1]
+
+
+@pytest.mark.parametrize(
+    ("text", "points", "normals"),
+    [
+        ("1 2 3\n4 5 6\n", [[1, 2, 3], [4, 5, 6]], 0),
+        ("1,2,3\n4,5,6", [[1, 2, 3], [4, 5, 6]], 0),
+        ("# made by hand\n1\t2  3\n\n4 5 6\n", [[1, 2, 3], [4, 5, 6]], 0),
+        ("1 2 3 0 0 1\n", [[1, 2, 3]], 1),
+        ("1 2 3 255 128 0\n", [[1, 2, 3]], 0),
+        ("//Z Y X\n3 2 1\n", [[1, 2, 3]], 0),
+    ],
+)
+def test_text_of_another_program_is_read(tmp_path, text, points, normals):
+    (tmp_path / "other.xyz").write_text(text)
+    cloud = load_cloud_file(tmp_path / "other.xyz")
+    np.testing.assert_array_equal(cloud.points, points)
+    assert np.linalg.norm(cloud.normals, axis=1).sum() == normals
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "says"),
+    [
+        ("a.xyz", b"1 2\n3 4\n", "2 numbers where 3 are expected"),
+        ("a.xyz", b"1 2 3\n1 2\n", "cannot be read as columns of numbers"),
+        ("a.xyz", b"\x00\xff" * 50, "cannot be read as columns of numbers"),
+        ("a.xyz", b"1 " * 9000, "a line longer than"),
+        ("a.xyz", b"//x y signal\n1 2 3\n", "no columns x, y and z"),
+        ("a.ply", b"ply\nformat ascii 1.0\nend_header\n", "no element vertex"),
+        ("a.ply", b"ply\nformat ascii 1.0\nelement vertex 3\nend_header\n", "no columns"),
+        ("a.ply", b"plastic", "is not a PLY file"),
+        ("a.las", b"LASF", "is not a LAS file"),
+        ("a.laz", b"", "is not a LAS file"),
+        ("a.e57", b"ASTM-E57" + bytes(40), "cannot be read as E57"),
+        ("a.e57", b"", "cannot be read as E57"),
+    ],
+)  # fmt: skip
+def test_a_malformed_file_is_refused_with_its_name(tmp_path, name, content, says):
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(FormatError, match=says) as refusal:
+        load_cloud_file(tmp_path / name)
+    assert str(tmp_path / name) in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
+def _lie(data, suffix):
+    """Say that a file holds 900 million points or more, wherever it says how many it holds."""
+    if suffix == ".ply":
+        return data.replace(b"element vertex 50", b"element vertex 900000000")
+    if suffix == ".e57":
+        return data.replace(b'recordCount="50"', b'recordCount="900000000"')
+    lied = bytearray(data)
+    lied[247:255] = struct.pack("<Q", 900_000_000)
+    return bytes(lied)
+
+
+@pytest.mark.parametrize("suffix", [".ply", ".las", ".laz", ".e57"])
+def test_sizes_that_lie_cost_no_memory(tmp_path, suffix):
+    path = tmp_path / f"cloud{suffix}"
+    save(path, some_cloud(50))
+    lied = _lie(path.read_bytes(), suffix)
+    assert lied != path.read_bytes()
+    path.write_bytes(lied)
+    code = (
+        "import resource, sys; from pathlib import Path\n"
+        "from murkscan.errors import FormatError\n"
+        "from murkscan.io.cloud_files import load_cloud_file\n"
+        "before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
+        "try: load_cloud_file(Path(sys.argv[1])); print('read')\n"
+        "except FormatError as error: print(error)\n"
+        "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)\n"
+    )
+    command = [sys.executable, "-c", code, str(path)]
+    said = subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
+    assert str(path) in said[0]
+    # Buffers of one block, half a million rows of about 100 bytes, may be there: 50 MB, twice.
+    assert int(said[1]) < 200_000
+
+
+@pytest.mark.parametrize("suffix", [".ply", ".xyz", ".las", ".e57"])
+@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(data=st.data())
+def test_no_bytes_are_a_fault_of_ours(tmp_path, suffix, data):
+    path = tmp_path / f"cloud{suffix}"
+    save(path, some_cloud(20))
+    content = bytearray(path.read_bytes())
+    for _ in range(data.draw(st.integers(1, 6))):
+        content[data.draw(st.integers(0, len(content) - 1))] = data.draw(st.integers(0, 255))
+    path.write_bytes(bytes(content[: data.draw(st.integers(0, len(content)))]))
+    try:
+        load_cloud_file(path)
+    except FormatError as refusal:
+        assert str(path) in str(refusal)  # noqa: PT017  both outcomes are right
+
+
+def test_without_the_extra_the_install_line_is_said(tmp_path):
+    """A module that is not there stands for an extra that is not installed."""
+    code = (
+        "import sys; sys.modules['laspy'] = sys.modules['pye57'] = None\n"
+        "from pathlib import Path\n"
+        "from murkscan.errors import MissingDependency\n"
+        "from murkscan.io.cloud_files import check_cloud_suffix\n"
+        "for name in ('a.laz', 'a.e57'):\n"
+        "    try: check_cloud_suffix(Path(name))\n"
+        "    except MissingDependency as error: print(error)\n"
+    )
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert said.stdout.count('pip install "murkscan[formats]"') == 2
