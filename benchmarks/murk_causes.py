@@ -3,6 +3,8 @@
 import numpy as np
 from murk_match import REACH, Matched, nearest_in_line, scan_line
 
+from murkscan.types.true_stripe import TrueStripe
+
 _NEAR = 3
 """Scan lines from a jump, or from an end of the stripe, that count as near."""
 _STEP = 2.0
@@ -12,7 +14,16 @@ _PAINT = 0.12
 _DISPLACED = 4.0
 """Distance from a true centre up to which a false one is that one, displaced [px]."""
 MISSED = ("jump", "paint", "bound 0.3–0.5", "bound 0.1–0.3", "bound ≤ 0.1")
-FALSE = ("displaced at a jump", "displaced", "second line", "before the surface", "elsewhere")
+_BESIDE = 2
+"""Scan lines beyond its end into which the picture's blur carries a stripe."""
+FALSE = (
+    "displaced at a jump",
+    "displaced",
+    "over an end",
+    "second line",
+    "before the surface",
+    "elsewhere",
+)
 
 
 def count_causes(matched: Matched) -> dict[str, dict[str, int]]:
@@ -28,11 +39,19 @@ def count_causes(matched: Matched) -> dict[str, dict[str, int]]:
     at_jump = displaced & jump[nearest] if len(jump) else displaced
     # The laser sits above: what the sheet lights before the surface is above it in the picture.
     before = np.isfinite(away) & (rows < truth.pixels[nearest, 1]) if len(jump) else displaced
-    excuses = (at_jump, displaced, second <= REACH, before, np.ones(len(away), bool))
+    over = _goes_on(line, rows, truth) <= REACH
+    excuses = (at_jump, displaced, over, second <= REACH, before, np.ones(len(away), bool))
     return {
         "missed": _first_that_fits(missed, MISSED, causes),
         "false": _first_that_fits(~matched.is_right, FALSE, excuses),
     }
+
+
+def _goes_on(line: np.ndarray, rows: np.ndarray, truth: TrueStripe) -> np.ndarray:
+    """Give the distance from the line itself in the scan lines beside [px]."""
+    direct = np.flatnonzero(~truth.is_reflected)
+    beside = [shift for shift in range(-_BESIDE, _BESIDE + 1) if shift != 0]
+    return np.min([nearest_in_line(line + s, rows, truth, direct)[0] for s in beside], axis=0)
 
 
 def _first_that_fits(

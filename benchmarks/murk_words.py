@@ -15,7 +15,7 @@ Finders were tuned on seeds 0 to 2; none of the seeds below was looked at for th
   a true centre of the line itself in the same frame and scan line. *Recall* is the share of
   visible centres that are found. *Precision* is the share of found ones that are right: a true
   centre that is not visible counts as right when found, a point on the second line that gloss
-  throws as false.
+  throws as false, and so one that the lens's blur carries into a scan line beside its own.
 - *Error / bound* is the median of abs(error) / `crlb_px` / 0.6745 where the bound is at most 0.3
   px: 1 is what one scan line allows, and who uses neighbouring ones may pass below. *Bias* is the
   median of the signed error there.
@@ -48,10 +48,12 @@ its bias."""
 
 CAUSES = """\
 Missed points as a share [%] of the visible ones, false points of the found ones, each under the
-first cause that fits. *Jump*: within 3 scan lines of a jump or an end of the stripe; *paint*: where
-the albedo changes by 12 % from line to line; else by its bound. *Displaced*: less than 4 px from a
-true centre; *second line*: the one that gloss throws; *before the surface*: in water that the sheet
-lights, so snow or glow; *elsewhere*: behind the surface, or where there is none."""
+first cause that fits. *Jump*: within 3 scan lines of a jump or an end of the stripe; *paint*:
+where the albedo changes by 12 % from line to line; else by its bound. *Displaced*: less than 4 px
+from a true centre of its scan line; *over an end*: on the stripe of a scan line up to 2 beside
+it, whose light the lens has carried over; *second line*: the one that gloss throws; *before the
+surface*: in water that the sheet lights, so snow or glow; *elsewhere*: behind the surface, or
+where there is none."""
 
 PULL = """\
 Median error where the stripe's height changes by more than 8 % from one scan line, or frame, to
