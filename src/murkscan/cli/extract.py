@@ -13,7 +13,7 @@ def extract(
     rig: Path,
     out: Path,
     reading: RecordingFlags = RecordingFlags(),
-    extractor: ExtractorName = "gray-gravity",
+    extractor: ExtractorName = "murk",
     settings: Settings = (),
     laser: int = 0,
 ) -> None:

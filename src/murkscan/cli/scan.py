@@ -24,7 +24,7 @@ def scan(
     out: Path,
     motion: MotionFlags = MotionFlags(),
     reading: RecordingFlags = RecordingFlags(),
-    extractor: ExtractorName = "gray-gravity",
+    extractor: ExtractorName = "murk",
     settings: Settings = (),
     method: MethodName = "ray-sheet",
     mesher: MesherName = "grid",

@@ -1,4 +1,4 @@
-"""The demo: simulate a recording, scan it as any other, and hold the model against the truth."""
+"""The demo: simulate a recording, scan it as the paper does and as we do, and ask the truth."""
 
 import time
 from dataclasses import dataclass
@@ -8,10 +8,13 @@ from pathlib import Path
 import numpy as np
 
 from ..capture import open_recording
+from ..extract import AbstractExtractor, Murk, ThresholdSkeleton
 from ..geometry.mesh_distance import distance_to_mesh
 from ..io.mesh_files import load_mesh
 from ..io.rig_toml import load_rig
+from ..io.text import save_text
 from ..motion import ConstantSpeed
+from ..page import Gallery, Picture, Section, Table, render_page
 from ..project import Project, Stage
 from ..simulate import as_standalone, parse_scene, read_scene
 from ..types.arrays import Scalars
@@ -51,34 +54,92 @@ class Errors:
         return cls(len(distances), len(distances) - len(true), rms, float(np.quantile(true, 0.95)))
 
 
-def run_demo(out: Path, *, progress: Progress = silent) -> tuple[Project, Errors]:
-    """Simulate a hull's recording, scan it, and compare the cloud with the true hull.
+@dataclass(frozen=True)
+class Compared:
+    """A scan, and how far it is from the truth."""
+
+    name: str
+    """How the stripe was found, in words."""
+    project: Project
+    errors: Errors
+
+
+def run_demo(out: Path, *, progress: Progress = silent) -> tuple[Compared, Compared]:
+    """Simulate a hull's recording, scan it in two ways, and compare both with the true hull.
+
+    All but the way to find the stripe is the same in both.
 
     Args:
-        out: Folder for `recording` and `scan`.
+        out: Folder for `recording`, `scan`, `paper` and the page that shows both.
         progress: Told how far each stage is.
 
     Returns:
-        The scan, and the errors of its cloud, of which at most 20 000 points spread evenly over it
-        are compared.
+        The scan by the default way, and the one by the paper's threshold and skeleton. Of each
+        cloud at most 20 000 points spread evenly over it are compared.
 
     Raises:
         DeviceError: The disk is full.
     """
-    text, name, folder = read_scene(_SCENE)
-    scene = parse_scene(text, name, folder)
-    text = as_standalone(text, scene.rig, folder)
-    stage = Stage(out / "recording", {"murkscan": version("murkscan"), "scene": text})
+    _record(out / "recording", progress)
+    ours = _scan(out, "scan", Murk(), "murk: noise, chain and fit", progress)
+    paper = _scan(out, "paper", ThresholdSkeleton(), "the paper: threshold and skeleton", progress)
+    save_text(out / "index.html", _page(ours, paper))
+    return ours, paper
+
+
+def _record(folder: Path, progress: Progress) -> None:
+    """Simulate the recording, unless it is there."""
+    text, name, beside = read_scene(_SCENE)
+    scene = parse_scene(text, name, beside)
+    text = as_standalone(text, scene.rig, beside)
+    stage = Stage(folder, {"murkscan": version("murkscan"), "scene": text})
     if stage.result() is None:
         since = time.monotonic()
         stage.begin()
         simulate_recording(scene, stage.folder, text=text, progress=progress)
         stage.finish({"frames": len(scene)}, since=since)
+
+
+def _scan(
+    out: Path, folder: str, extractor: AbstractExtractor, name: str, progress: Progress
+) -> Compared:
+    """Scan the recording in one way, and hold the cloud against the true hull."""
     rig = load_rig(out / "recording" / "rig.toml")
     recording = open_recording(out / "recording" / "frames", wavelength=rig.wavelength)
     motion = ConstantSpeed(_SPEED, rig.lasers[0].axis)
-    project = scan(recording, rig, motion, out=out / "scan", progress=progress)
+    project = scan(recording, rig, motion, out=out / folder, extractor=extractor, progress=progress)
     points = project.load_cloud().points
     compared = points[:: max(len(points) // _COMPARED, 1)]
     truth = load_mesh(out / "recording" / "truth" / "mesh.ply")
-    return project, Errors.from_distances(distance_to_mesh(compared, truth, within=FALSE))
+    errors = Errors.from_distances(distance_to_mesh(compared, truth, within=FALSE))
+    return Compared(name, project, errors)
+
+
+def _page(ours: Compared, paper: Compared) -> str:
+    """Show both scans side by side."""
+    rows = [
+        (
+            one.name,
+            len(one.project.load_cloud()),
+            f"{one.errors.false / max(one.errors.count, 1):.1%}",
+            f"{1e3 * one.errors.rms:.2f} mm",
+        )
+        for one in (paper, ours)
+    ]
+    overlays = [{file.name for file in one.project.find_overlays()} for one in (paper, ours)]
+    common = sorted(overlays[0] & overlays[1])
+    shown = [f"extract/overlay/{name}" for name in common[len(common) // 2 :][:1]]
+    pictures = [
+        Picture(f"{one.project.root.name}/{path}", f"{caption}, by {one.name}")
+        for path, caption in [
+            *((path, "what was found in one frame") for path in shown),
+            ("view/isometric-depth.png", "the surface, coloured by depth"),
+        ]
+        for one in (paper, ours)
+    ]
+    head = ("", "points", f"false: more than {FALSE * 1e3:g} mm off", "RMS of the others")
+    return render_page(
+        "One recording, scanned in two ways",
+        [Section("", [Table(rows, head), Gallery(pictures)])],
+        subtitle="A ship model's hull in water of 3 attenuations per metre, simulated",
+    )

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..capture import AbstractRecording
-from ..extract import AbstractExtractor, GrayGravity
+from ..extract import AbstractExtractor, Murk
 from ..io.rig_toml import as_tables
 from ..mesh import AbstractMesher, GridMesh
 from ..motion import AbstractMotion
@@ -49,7 +49,7 @@ def scan(
         rig: The calibrated rig that recorded them; see `load_rig`.
         motion: How the camera moved.
         out: The folder for everything that is made.
-        extractor: The way to find the stripe; gray gravity unless given.
+        extractor: The way to find the stripe; Murk unless given.
         method: The way from pixels to points; ray and sheet unless given.
         mesher: The way to make a surface; the scan's own grid unless given.
         laser: Number of the laser in the rig whose stripe is followed.
@@ -65,7 +65,7 @@ def scan(
         MissingDependency: The mesher needs an extra that is not installed.
         DeviceError: The disk is full; what is finished is kept.
     """
-    extractor, method = extractor or GrayGravity(), method or RaySheet()
+    extractor, method = extractor or Murk(), method or RaySheet()
     mesher = mesher or GridMesh()
     mesher.check_available()
     check_times(recording.path, motion, is_timed=recording.is_timed)
