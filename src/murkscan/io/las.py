@@ -12,6 +12,7 @@ from ..types.cloud import PointCloud
 from .atomic import replacing
 from .cloud_columns import BLOCK, COLUMNS, as_rows, from_columns, known_name
 from .las_header import check_las_header
+from .laz_chunks import check_laz_chunks
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -76,6 +77,8 @@ def iterate_las(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud]:
         # One thread: the others believe the sizes that a file states before they read it.
         backend = laspy.LazBackend.Lazrs
         with laspy.open(path, laz_backend=backend, read_evlrs=False) as reader:
+            if reader.header.are_points_compressed:
+                check_laz_chunks(path, reader.header)
             count = reader.header.point_count
             for start in range(0, count, block):
                 points = reader.read_points(min(block, count - start))
