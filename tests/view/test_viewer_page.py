@@ -1,15 +1,18 @@
 """The page as users meet it: in a browser, from a file, by mouse and keys."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
+from murkscan.cloud import merge_profiles
 from murkscan.mesh import GridMesh
 from murkscan.types.frame_times import FrameTimes
-from murkscan.view import Layer, model_of_points, model_of_scan, render_viewer
+from murkscan.view import Layer, fit_shift_field, model_of_points, model_of_scan, render_viewer
 
-from ..scans import scan, scan_cloud, sphere, step
+from ..scans import plane, scan, scan_cloud, sphere, step
 from .browser import chromium, open_page, picture, rest
 
 HOSTILE = "</script><script>window.broken=1</script><img src=x onerror='window.broken=1'>"
@@ -43,11 +46,31 @@ def steps():
 
 
 @pytest.fixture(scope="module")
-def opened(browser, steps, tmp_path_factory):
-    """A page with a step scanned, and a ball, which a hostile name has been given."""
+def turned():
+    """A plane scanned by a camera that looks askew, whose points share errors that are known."""
+    profile, trajectory = scan(plane, spacing=4e-3)
+    askew = Rotation.from_rotvec([0.4, -0.7, 0.2])
+    quaternions = np.tile(askew.as_quat(scalar_first=True), (2, 1))
+    trajectory = replace(trajectory, quaternions=quaternions)
+    cloud = replace(
+        merge_profiles(profile, trajectory, axis="x"),
+        sigma=np.full(len(profile), 1e-6, np.float32),
+    )
+    # All is a hundredth too large, and what is far is pushed to the right.
+    shifts = np.stack([1e-2 * profile.points, profile.points[:, [2, 0, 0]] * [2e-2, 0, 0]], axis=2)
+    field = fit_shift_field(profile.points, shifts)
+    times = np.unique(cloud.frame)
+    frames = FrameTimes(times.astype(np.uint32), times * 0.04)
+    model = model_of_scan("turned", cloud, trajectory=trajectory, frames=frames, shift_field=field)
+    return model, np.einsum("ij,njk->nik", askew.as_matrix(), shifts)
+
+
+@pytest.fixture(scope="module")
+def opened(browser, steps, turned, tmp_path_factory):
+    """A page with a step scanned, a ball, which a hostile name has been given, and a plane."""
     ball, _ = scanned(sphere, HOSTILE, spacing=2e-3)
     file = tmp_path_factory.mktemp("page") / "a page?#.html"
-    file.write_text(render_viewer([steps[0], ball], title=HOSTILE), "utf-8")
+    file.write_text(render_viewer([steps[0], ball, turned[0]], title=HOSTILE), "utf-8")
     return open_page(browser, file)
 
 
@@ -134,6 +157,21 @@ def test_a_known_length_is_measured_right_and_its_doubt_follows_sigma(page, step
     expected = 1.96e3 * np.sqrt(np.sum((SIGMA * along) ** 2))
     # The rounding adds a per cent at most; two digits are shown.
     assert float(doubt) == pytest.approx(expected, rel=0.02, abs=0.006)
+
+
+def test_what_the_points_share_counts_as_far_as_it_stretches_a_length(page, turned):
+    model, shifts = turned
+    ends = [20, len(shifts) - 40]
+    page.evaluate("ends => (murkscan.update({scan: 2}), murkscan.measure(...ends))", ends)
+    rest(page)
+    span = np.diff(model.vertices[ends], axis=0)[0]
+    along = span / np.linalg.norm(span)
+    expected = 1.96e3 * np.linalg.norm(along @ (shifts[ends[1]] - shifts[ends[0]]))
+    said = page.locator(".measures").inner_text()
+    shared = float(re.search(r"calibration's part of it: ± ([\d.]+) mm", said)[1])
+    # The last of two digits.
+    assert expected > 0.5
+    assert shared == pytest.approx(expected, abs=0.006)
 
 
 def test_escape_stops_measuring_and_keeps_what_was_measured(page, steps):

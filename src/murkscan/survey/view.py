@@ -9,6 +9,7 @@ from ..page import Gallery, Note, Picture, Section, render_page
 from ..project import Project
 from ..view import MOST, PICTURES, Model, draw_pictures, model_of_scan, render_viewer
 from .progress import Progress, silent
+from .shift_field import trace_shift_field
 
 
 def draw_views(
@@ -76,6 +77,8 @@ def _model(project: Project, most: int) -> Model:
         mesh=project.load_mesh() if has_surface else None,
         trajectory=project.load_trajectory(),
         frames=project.load_frame_times(),
+        is_timed=project.load_scan()["recording"]["is_timed"],
+        shift_field=trace_shift_field(project),
         most=most,
     )
 

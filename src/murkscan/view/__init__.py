@@ -12,6 +12,9 @@ from .model import Model as Model
 from .model import model_of_points as model_of_points
 from .plain import Plain as Plain
 from .render import render as render
+from .shift_field import ShiftField as ShiftField
+from .shift_field import fit_shift_field as fit_shift_field
+from .thinned import choose_fairly as choose_fairly
 from .viewer_page import render_viewer as render_viewer
 from .views import View as View
 from .views import standard_views as standard_views

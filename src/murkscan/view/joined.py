@@ -8,7 +8,8 @@ from ..types.cloud import PointCloud
 from ..types.frame_times import FrameTimes
 from ..types.mesh import Mesh
 from ..types.trajectory import Trajectory
-from .model import Layer, Model, Path, Times, normals_of, usual_spacing
+from .model import Layer, Model, Times, normals_of, usual_spacing
+from .shift_field import ShiftField
 from .thinned import choose_fairly, cluster_vertices
 from .views import standard_views
 
@@ -23,6 +24,8 @@ def model_of_scan(
     mesh: Mesh | None = None,
     trajectory: Trajectory | None = None,
     frames: FrameTimes | None = None,
+    is_timed: bool = True,
+    shift_field: ShiftField | None = None,
     most: int = MOST,
 ) -> Model:
     """Join a scan's points with its surface, to be shown together.
@@ -33,6 +36,8 @@ def model_of_scan(
         mesh: The surface between them; its vertices may be points of the cloud or others.
         trajectory: How the camera went through the world.
         frames: At which time each frame was recorded, for the trajectory.
+        is_timed: Whether these times are seconds, and no numbers of pictures.
+        shift_field: How far points move with the rig's errors.
         most: Points and vertices that are kept, at most: of more points a fair choice, of more
             vertices one a cell.
 
@@ -51,6 +56,7 @@ def model_of_scan(
     faces = place[surface.faces]
     times, moments = np.unique(kept.frame, return_inverse=True)
     seconds = _seconds(times, frames)
+    path = _path(seconds, trajectory) if frames is not None else None
     return Model(
         name=name,
         vertices=vertices,
@@ -60,9 +66,12 @@ def model_of_scan(
         layers=_layers(kept, source),
         moments=moments[source],
         times=seconds,
-        path=_path(seconds, trajectory, is_timed=frames is not None),
+        is_timed=is_timed and frames is not None,
+        path=np.zeros((0, 3)) if path is None else path.positions,
+        attitudes=np.zeros((0, 4)) if path is None else path.quaternions,
         views=standard_views(trajectory),
         spacing=usual_spacing(kept.points),
+        shift_field=shift_field,
         note=_note(cloud, kept, mesh, surface),
     )
 
@@ -92,13 +101,11 @@ def _seconds(numbers: SignedFrameNumbers, frames: FrameTimes | None) -> Times:
     return frames.time[order][np.minimum(place, len(order) - 1)]
 
 
-def _path(times: Times, trajectory: Trajectory | None, *, is_timed: bool) -> Path:
-    if trajectory is None or not is_timed:
-        return np.zeros((0, 3))
-    inside = np.clip(times, trajectory.times[0], trajectory.times[-1])
-    return np.stack(
-        [np.interp(inside, trajectory.times, axis) for axis in trajectory.positions.T], axis=1
-    )
+def _path(times: Times, trajectory: Trajectory | None) -> Trajectory | None:
+    """Give the poses at the profiles; none where two profiles are of one time."""
+    if trajectory is None or not np.all(np.diff(times) > 0):
+        return None
+    return trajectory.at(np.clip(times, trajectory.times[0], trajectory.times[-1]))
 
 
 def _note(cloud: PointCloud, kept: PointCloud, mesh: Mesh | None, surface: Mesh) -> str:

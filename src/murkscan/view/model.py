@@ -9,12 +9,14 @@ from scipy.spatial import KDTree
 
 from ..errors import InputError
 from ..types.arrays import Directions, Faces, Indices, Points, Scalars
+from .shift_field import ShiftField
 from .surface import vertex_normals
 from .views import View, standard_views
 
 Values = Float[np.ndarray, "vertices"]
 Times = Float[np.ndarray, "profiles"]
 Path = Float[np.ndarray, "positions 3"]
+Attitudes = Float[np.ndarray, "positions 4"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,12 +58,18 @@ class Model:
     """Which profile each vertex comes from, an index into the times."""
     times: Times
     """Time of each profile [s]; or its number, where the recording has no times."""
+    is_timed: bool
+    """Whether these are seconds."""
     path: Path
     """Where the camera was at each profile [m]; empty where that is not known."""
+    attitudes: Attitudes
+    """Rotation from camera axes to world axes at each place of the path, w x y z."""
     views: tuple[View, ...]
     """The isometric view and the six standard ones."""
     spacing: float
     """Usual distance between neighbouring vertices [m]."""
+    shift_field: ShiftField | None = None
+    """How far points move with the rig's errors; None where the rig states none."""
     note: str = ""
     """What must be said of it in plain words, such as that points were left out."""
 
@@ -115,7 +123,9 @@ def model_of_points(
         layers=(),
         moments=np.zeros(count, int),
         times=np.zeros(1),
+        is_timed=False,
         path=np.zeros((0, 3)),
+        attitudes=np.zeros((0, 4)),
         views=standard_views(),
         spacing=usual_spacing(points),
     )

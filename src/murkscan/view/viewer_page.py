@@ -16,6 +16,7 @@ from ..types.arrays import Indices, Scalars
 from .depth import Depth
 from .model import Layer, Model
 from .packing import pack, pack_directions, pack_positions, pack_values
+from .shift_field import ShiftField
 
 _SHARE = 1.0
 """Percent of a layer's values at each end that may lie beyond the colours."""
@@ -108,10 +109,24 @@ def _pack_model(model: Model) -> tuple[dict[str, Any], dict[str, str]]:
         "spacing": model.spacing,
         "layers": layers,
         "times": _rounded(model.times, 6),
+        "timed": model.is_timed,
         "path": _rounded(model.path - np.array(positions.low), 6),
+        "attitudes": _rounded(model.attitudes, 9),
+        "shifts": _about_shifts(model.shift_field),
         "views": {view.name: _rounded(view.view_from_world, 9) for view in model.views},
     }
     return about, blobs
+
+
+def _about_shifts(field: ShiftField | None) -> dict[str, Any] | None:
+    if field is None:
+        return None
+    return {
+        "centre": field.centre.tolist(),
+        "scale": field.scale,
+        "powers": field.powers.tolist(),
+        "coefficients": _rounded(field.coefficients, 9),
+    }
 
 
 def _about_depth(model: Model) -> dict[str, Any]:

@@ -36,10 +36,10 @@ export function measureTool(app) {
       make("small", { textContent: parts }), make("small", {
         textContent: `Of these two points; neighbours lie about ${length(app.model.spacing, 1)} apart.`,
       }));
-    if (shared > 0) {
+    if (off !== null) {
       item.append(make("small", {
-        textContent: `Not in it: the calibration's own uncertainty, which all points share: a sigma of up to `
-          + `${length(shared)} here. Over short distances most of it cancels.`,
+        textContent: shared === null ? "The rig states no uncertainty of its calibration: it is not in it."
+          : `The calibration's part of it: ± ${length(shared)}.`,
       }));
     }
     return item;

@@ -18,7 +18,7 @@ export function pathTool(app) {
   const element = make("div", {}, make("div", { className: "row" }, play, path), slider, readout, lone);
 
   function sync() {
-    const { times } = app.model;
+    const { times, timed } = app.model;
     const last = times.length - 1;
     const at = Math.min(Math.floor(app.state.profile), last);
     play.textContent = app.state.playing ? "Pause" : "Play";
@@ -29,7 +29,8 @@ export function pathTool(app) {
     lone.hidden = last > 0;
     slider.max = last;
     slider.value = at;
-    readout.textContent = `profile ${at + 1} of ${last + 1} · ${(times[at] - times[0]).toFixed(2)} s`;
+    readout.textContent = `profile ${at + 1} of ${last + 1}${
+      timed ? ` · ${(times[at] - times[0]).toFixed(2)} s` : ""}`;
   }
   return { name: "path", title: "Path and time", element, sync };
 }

@@ -2,13 +2,15 @@
 
 import { pointOf } from "./model.js";
 import { scatterAround } from "./scatter.js";
+import { stretchOf } from "./shared_errors.js";
 import { dot, minus, norm, unit } from "./vectors.js";
 
 const AT_95 = 1.96;
 
 // Lengths in metres. `off` is half of the 95 % interval: from the sigma of both points, or from the
-// scatter around them where that is larger, and from the page's rounding; null where the scan
-// states no sigma. `shared` is the larger of what the points share.
+// scatter around them where that is larger, from the page's rounding, and from what the rig's own
+// errors do to this distance; null where the scan states no sigma. `shared` is the rig's part of it,
+// null where the rig states none.
 export function distance(model, first, second) {
   const [a, b] = [pointOf(model, first), pointOf(model, second)];
   const step = minus(b, a);
@@ -21,12 +23,13 @@ export function distance(model, first, second) {
   [first, second].forEach((i, end) => {
     variance += (sigmas[end] * share(model, i, [a, b][end], along)) ** 2;
   });
-  const shared = [first, second].map((i) => valueOf(model, "sigma common", i) / 1e3 || 0);
+  const shared = stretchOf(model, [a, b], [first, second].map((i) => model.moments[i]), along);
+  variance += (shared ?? 0) ** 2;
   return {
     length: norm(step),
     step,
     off: isKnown ? AT_95 * Math.sqrt(variance) : null,
-    shared: Math.max(...shared),
+    shared: shared === null ? null : AT_95 * shared,
   };
 }
 

@@ -1,0 +1,34 @@
+"""How far the points of a scan move with the errors of its rig, for the page to measure with."""
+
+import numpy as np
+
+from ..optics.uncertainty import common_shifts
+from ..project import Project
+from ..view import ShiftField, choose_fairly, fit_shift_field
+from .common_part import moving_rig
+from .scan_rig import load_scan_rig
+
+_TRACED = 3000
+"""Points that stand for all: the shifts vary slowly."""
+_FEWEST = 100
+
+
+def trace_shift_field(project: Project) -> ShiftField | None:
+    """Give the field of a scan's shifts; None where the rig states no covariance, or few points.
+
+    Raises:
+        MissingResult: The motion stage has not been finished.
+    """
+    rig = moving_rig(project, load_scan_rig(project))
+    if not rig.covariance.names:
+        return None
+    profile = project.load_profile()
+    some = profile[choose_fairly(len(profile), _TRACED)]
+    laser = project.finished("extract").key["settings"]["laser"]
+    shifts = common_shifts(some.pixels, rig, laser)
+    if rig.vehicle_from_camera is not None:
+        shifts = rig.vehicle_from_camera.rotation.T @ shifts
+    seen = np.isfinite(shifts).all(axis=(1, 2))
+    if np.count_nonzero(seen) < _FEWEST or not shifts[seen].any():
+        return None
+    return fit_shift_field(some.points[seen], shifts[seen])
