@@ -21,7 +21,7 @@ _SUMS = np.dtype(
         ("signal", "f8"),
         ("posterior", "f8"),
         ("sigma_common", "f8"),
-        ("best", "f4"),
+        ("best", "f8"),
         ("frame", "i4"),
         ("scan_line", "i4"),
         ("laser", "u1"),
@@ -37,7 +37,9 @@ def thin_cloud(cloud: PointCloud, voxel: float) -> PointCloud:
     return PointCloud.concatenate(list(thin_clouds(_Once(cloud), voxel)))
 
 
-def thin_clouds(blocks: Iterable[PointCloud], voxel: float) -> Iterator[PointCloud]:
+def thin_clouds(
+    blocks: Iterable[PointCloud], voxel: float, *, most: int = _MOST
+) -> Iterator[PointCloud]:
     """Replace the points of each voxel by one, over a cloud that comes in blocks.
 
     Positions, normals, signal and posterior are means weighted by 1/σ²; sigma is that of the mean,
@@ -53,13 +55,14 @@ def thin_clouds(blocks: Iterable[PointCloud], voxel: float) -> Iterator[PointClo
         blocks: The cloud; it must be possible to go through it more than once.
         voxel: Edge of a voxel [m]. The grid lies askew to the axes, so that a flat wall does not
             fall into two layers.
+        most: Voxels that are held at once.
 
     Raises:
         InputError: The edge is not positive, or too small for where the points lie.
     """
     left = [(0, 1)]
     while left:
-        sums = _Sums(*left.pop())
+        sums = VoxelSums(*left.pop(), most=most)
         for block in blocks:
             sums.add(block, voxel)
         left += sums.left_out
@@ -67,11 +70,11 @@ def thin_clouds(blocks: Iterable[PointCloud], voxel: float) -> Iterator[PointClo
         yield from (_as_cloud(rows[k : k + _BLOCK]) for k in range(0, len(rows), _BLOCK))
 
 
-class _Sums:
+class VoxelSums:
     """Sums over voxels, of those whose number falls into one share of all."""
 
-    def __init__(self, share: int, shares: int) -> None:
-        self._share, self._shares = share, shares
+    def __init__(self, share: int, shares: int, *, most: int = _MOST) -> None:
+        self._share, self._shares, self._most = share, shares, most
         self._parts: list[np.ndarray] = []
         self.left_out: list[tuple[int, int]] = []
         """Shares for which there was no room: number, and of how many."""
@@ -83,9 +86,9 @@ class _Sums:
         while self._parts and len(self._parts[-1]) <= 2 * len(rows):
             rows = _merge([self._parts.pop(), rows])
         self._parts.append(rows)
-        if sum(map(len, self._parts)) > _MOST:
+        if sum(map(len, self._parts)) > self._most:
             self._parts = [self.merged()]
-            while len(self._parts[0]) > _MOST:
+            while len(self._parts[0]) > self._most:
                 self._halve()
 
     def _halve(self) -> None:
@@ -118,12 +121,12 @@ def _sum(cloud: PointCloud, voxel: float) -> np.ndarray:
     rows["key"] = VoxelGrid(cloud.points, voxel).keys
     rows["weight"], rows["information"] = weight, np.where(known, weight, 0.0)
     rows["points"] = cloud.points * weight[:, None]
-    rows["normals"] = cloud.normals * (weight * usual**2)[:, None]
+    rows["normals"] = cloud.normals * weight[:, None]
     for name in ("signal", "posterior", "sigma_common"):
         rows[name] = getattr(cloud, name) * weight
     for name in ("frame", "scan_line", "laser"):
         rows[name] = getattr(cloud, name)
-    rows["best"] = weight * usual**2
+    rows["best"] = weight
     return _merge([rows])
 
 

@@ -8,9 +8,9 @@ import numpy as np
 from ..types.arrays import Mask
 from ..types.profile import Profile
 
-BLOCK = 3_000_000
+BLOCK = 2_000_000
 """Points of a block, about: some two gigabytes while normals and outliers are looked for."""
-_HALO = 300_000
+_HALO = 200_000
 """Points on either side of it that are looked at, too."""
 
 
