@@ -5,7 +5,7 @@ frames ─▶ scores ─▶ ridges ─▶ posteriors ─▶ centres ─▶ joine
 """
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import ClassVar, final
 
@@ -16,8 +16,10 @@ from ..types.laser import Axis
 from ..types.rig import Rig
 from ..types.stripe import Stripe
 from .assemble import assemble_stripe
+from .attenuation import estimate_attenuation, nearer_side
 from .base import AbstractExtractor
 from .centres import Centres, doubt_wide, find_centres, join_frames
+from .glow import learn_glow
 from .markov import Markov, ask_frames
 from .matched_filter import MatchedFilter
 from .neighbours import with_neighbours
@@ -60,13 +62,24 @@ class Murk(AbstractExtractor):
         self._markov()
 
     def learn(self, frames: Sequence[Frame], rig: Rig, *, laser: int = 0) -> Background:
-        """Learn the noise of each grey level, and the stripe's shape."""
+        """Learn the noise of each grey level, the stripe's shape, and how murky the water is."""
         axis = rig.laser(laser).axis
         levels = learn_levels([f.image if axis == "y" else f.image.T for f in frames])
         shape = learn_stripe_shape(
             frames, axis, levels, markov=self._markov(), min_score=self.min_score
         )
-        return Background(learn_noise(frames).noise, levels, shape)
+        background = Background(learn_noise(frames).noise, levels, shape)
+        if rig.water is None:
+            return background
+        alone = (self.extract([frame], rig, background, laser=laser) for frame in frames)
+        glow = learn_glow(
+            frames,
+            [next(stripes) for stripes in alone],
+            axis,
+            levels,
+            near=nearer_side(rig, laser=laser),
+        )
+        return replace(background, attenuation=estimate_attenuation(glow, rig, laser=laser))
 
     def extract(
         self, frames: Iterable[Frame], rig: Rig, background: Background, *, laser: int = 0

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Shaped
 
-from ..types.arrays import Scalars
+from ..types.arrays import Indices, Pixels, Scalars
 from ..types.frame import Frame
 from ..types.laser import Axis
 
@@ -77,3 +77,16 @@ class ScanLines:
         if self.axis == "x":
             return positions
         return (positions - self.frame.first_row) / self.frame.row_step
+
+    def split(self, pixels: Pixels) -> tuple[Indices, Scalars]:
+        """Give the scan lines, and the positions along them, of pixels of the full frame."""
+        u, v = pixels.T
+        if self.axis == "y":
+            return np.rint(u).astype(int), v
+        return np.rint((v - self.frame.first_row) / self.frame.row_step).astype(int), u
+
+    def join(self, lines: Scalars, positions: Scalars) -> Pixels:
+        """Give pixels of the full frame from scan lines and positions of the full frame."""
+        if self.axis == "y":
+            return np.stack([lines, positions], axis=1)
+        return np.stack([positions, self.frame.as_full_rows(lines)], axis=1)

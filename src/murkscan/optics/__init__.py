@@ -8,6 +8,7 @@ out, and everything is the pinhole and the plane.
 from .rig_parameters import parameters_of as parameters_of
 from .rig_parameters import perturb_rig as perturb_rig
 from .rig_parameters import tilt_directions as tilt_directions
+from .sheet import as_fan as as_fan
 from .sheet import distance_to_sheet as distance_to_sheet
 from .sheet import equivalent_plane as equivalent_plane
 from .sheet import intersect_rays_with_sheet as intersect_rays_with_sheet

@@ -1,5 +1,7 @@
 """The laser's sheet of light, flat or refracted: where rays meet it and where points lie."""
 
+import math
+
 import numpy as np
 
 from .._kernels.fan import Fan as FanArrays
@@ -12,6 +14,8 @@ from ..types.plane import Plane
 from ..types.rays import Rays
 from .interfaces import as_triple, interfaces_of
 
+_HALF_ANGLE = math.radians(45)
+"""Half the opening of a laser that is given as a plane and tells none [rad]."""
 _NUM_ANGLES, _NUM_DEPTHS = 301, 18
 """Grid of points to which the equivalent plane is fitted."""
 
@@ -90,6 +94,24 @@ def locate_on_fan(points: Points, fan: Fan, index: float | None = None) -> FanCo
     """
     found = locate_points(points, _as_arrays(fan), interfaces_of(fan.port, index))
     return FanCoordinates(*np.ascontiguousarray(found.T))
+
+
+def as_fan(laser: Laser) -> Fan:
+    """Give a laser's fan; one known by its plane alone shines from where that plane is.
+
+    Such a plane's fan starts where the sheet cuts the camera's axis, as in the paper's figure 3,
+    and opens by 45 degrees to both sides.
+    """
+    plane = laser.sheet
+    if isinstance(plane, Fan):
+        return plane
+    at = "xy".index(laser.axis)
+    axes = np.eye(3)
+    along = axes[1 - at] - (axes[1 - at] @ plane.normal) * plane.normal
+    ahead = np.cross(along, plane.normal)
+    ahead *= np.sign(ahead[2])
+    baseline, _ = laser.as_baseline_angle()
+    return Fan.spread(-baseline * axes[at], ahead, along, _HALF_ANGLE)
 
 
 def equivalent_plane(

@@ -8,13 +8,11 @@ import numpy as np
 from jaxtyping import Float
 
 from ..errors import InputError
-from ..optics import locate_on_fan, trace_fan
+from ..optics import as_fan, locate_on_fan, trace_fan
 from ..types.arrays import Directions, Points, Scalars
 from ..types.laser import Fan, FanCoordinates, Laser
 from ..types.rays import Rays
 
-_HALF_ANGLE = math.radians(45)
-"""Half the opening of a laser that is given as a plane and tells none [rad]."""
 _NUM_ANGLES = 4001
 """Rays by which the fan's spreading is tabled."""
 _EDGE = 0.02
@@ -67,20 +65,8 @@ class Beam:
 
     @classmethod
     def of(cls, laser: Laser, light: Light, index: float) -> "Beam":
-        """Give a laser its light; one known by its plane alone shines from where that plane is.
-
-        Such a plane's fan starts where the sheet cuts the camera's axis, as in the paper's
-        figure 3, and opens by 45 degrees to both sides.
-        """
-        if isinstance(laser.sheet, Fan):
-            return cls(laser.sheet, light, index)
-        plane, at = laser.sheet, "xy".index(laser.axis)
-        axes = np.eye(3)
-        along = axes[1 - at] - (axes[1 - at] @ plane.normal) * plane.normal
-        ahead = np.cross(along, plane.normal)
-        ahead *= np.sign(ahead[2])
-        baseline, _ = laser.as_baseline_angle()
-        return cls(Fan.spread(-baseline * axes[at], ahead, along, _HALF_ANGLE), light, index)
+        """Give a laser its light."""
+        return cls(as_fan(laser), light, index)
 
     def thickness(self, ranges: Scalars) -> Scalars:
         """Give the sheet's thickness [m], one standard deviation of its Gaussian profile."""

@@ -42,6 +42,17 @@ class StripeShape:
 
 
 @dataclass(frozen=True)
+class Attenuation:
+    """How murky the water was."""
+
+    effective: float
+    """What the sheet's own glow fades by [1/m]."""
+    low: float
+    high: float
+    """Ends of an interval that holds the water's beam attenuation c [1/m]."""
+
+
+@dataclass(frozen=True)
 class Background:
     """What an extractor has learnt from a recording before it looks for the stripe."""
 
@@ -51,3 +62,5 @@ class Background:
     """The same for each grey level; of extractors that weigh by it."""
     stripe: StripeShape | None = None
     """The stripe's look; of extractors that expect one."""
+    attenuation: Attenuation | None = None
+    """How murky the water is, where the glow tells."""
