@@ -183,3 +183,42 @@ def test_neighbours_are_those_within_reach(missing):
         assert {own.index + distance for distance in near} == {
             frame.index for frame in frames if abs(frame.index - own.index) <= 2
         }
+
+
+def _scene(num_frames=12, *, lift=0.0):
+    """Glow before a stripe that wanders slowly, and dark water behind it."""
+    rows = np.arange(HEIGHT)[:, None]
+    return [
+        lift + np.where(rows < _hull(i), _glow(), 5.0) + _light(_hull(i), 60.0)
+        for i in range(num_frames)
+    ]
+
+
+def _remarks(light):
+    return " ".join(Murk().learn(_film(light), RIG).remarks)
+
+
+def test_a_good_recording_gives_no_cause_for_remarks():
+    assert _remarks(_scene()) == ""
+
+
+@pytest.mark.parametrize(
+    ("light", "word"),
+    [
+        ([np.full((HEIGHT, LENGTH), 9.0)] * 6, "laser"),
+        (_scene(1), "one frame"),
+        (_scene(lift=70.0), "lamps"),
+        ([*_scene()[:8], *[np.full((HEIGHT, LENGTH), 2.0)] * 4], "4 of the 12 frames"),
+        ([*_scene()[:6], *(2.0 * one for one in _scene()[6:])], "exposure"),
+        ([*_scene()[:6], *(np.roll(one, 40, axis=1)[::-1] for one in _scene()[6:])], "mount"),
+    ],
+    ids=["no stripe", "one frame", "lamp on", "black", "auto-exposure", "moved"],
+)
+def test_a_bad_recording_says_what_is_wrong(light, word):
+    assert word in _remarks(light)
+
+
+@pytest.mark.parametrize("level", [0, 255])
+def test_frames_without_any_picture_are_survived(level):
+    frames = [Frame(np.full((HEIGHT, LENGTH), level, np.uint8), i, i / 25) for i in range(5)]
+    assert sum(len(stripe) for stripe in _extract(frames)) == 0

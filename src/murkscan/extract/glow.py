@@ -78,8 +78,8 @@ def learn_glow(
 def _average(alike: Sequence[tuple[ScanLines, Stripe]], noise: Noise, near: int) -> Glow:
     """Average over frames of the same rows what lies before their surface."""
     lines = alike[0][0]
-    stack = np.stack([_average_blocks(each, noise) for each, _ in alike])
-    behind = np.stack([_is_behind(each, stripe, near) for each, stripe in alike])
+    stack = np.stack([average_blocks(each, noise) for each, _ in alike])
+    behind = np.stack([is_behind(each, stripe, near) for each, stripe in alike])
     before = np.where(behind, np.nan, stack)
     place, block = np.nonzero(np.isfinite(before).sum(axis=0) >= _FEWEST)
     level, number = _mean_within(before[:, place, block], 0, noise)
@@ -90,14 +90,14 @@ def _average(alike: Sequence[tuple[ScanLines, Stripe]], noise: Noise, near: int)
     return Glow(pixels, block, level, variance)
 
 
-def _average_blocks(lines: ScanLines, noise: Noise) -> Levels:
+def average_blocks(lines: ScanLines, noise: Noise) -> Levels:
     """Average each block of scan lines, without particles."""
     count = lines.num_lines // _BLOCK
     blocks = lines.levels[::_EVERY, : count * _BLOCK].reshape(-1, count, _BLOCK).astype(float)
     return _mean_within(blocks, 2, noise)[0]
 
 
-def _is_behind(lines: ScanLines, stripe: Stripe, near: int) -> Bool[np.ndarray, "length blocks"]:
+def is_behind(lines: ScanLines, stripe: Stripe, near: int) -> Bool[np.ndarray, "length blocks"]:
     """Tell which samples are at the stripe or behind it, or have none in their block."""
     count = lines.num_lines // _BLOCK
     line, along = lines.split(stripe.pixels)

@@ -24,6 +24,7 @@ from .markov import Markov, ask_frames
 from .matched_filter import MatchedFilter
 from .neighbours import with_neighbours
 from .noise import learn_levels, learn_noise
+from .remarks import find_remarks
 from .ridges import find_frame_ridges
 from .scan_lines import ScanLines
 from .stripe_shape import learn_stripe_shape
@@ -69,16 +70,14 @@ class Murk(AbstractExtractor):
             frames, axis, levels, markov=self._markov(), min_score=self.min_score
         )
         background = Background(learn_noise(frames).noise, levels, shape)
+        alone = (self.extract([frame], rig, background, laser=laser) for frame in frames)
+        stripes = [next(found) for found in alone]
+        near = nearer_side(rig, laser=laser)
+        remarks = find_remarks(frames, stripes, axis, levels, near=near)
+        background = replace(background, remarks=remarks)
         if rig.water is None:
             return background
-        alone = (self.extract([frame], rig, background, laser=laser) for frame in frames)
-        glow = learn_glow(
-            frames,
-            [next(stripes) for stripes in alone],
-            axis,
-            levels,
-            near=nearer_side(rig, laser=laser),
-        )
+        glow = learn_glow(frames, stripes, axis, levels, near=near)
         return replace(background, attenuation=estimate_attenuation(glow, rig, laser=laser))
 
     def extract(

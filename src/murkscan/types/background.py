@@ -64,3 +64,5 @@ class Background:
     """The stripe's look; of extractors that expect one."""
     attenuation: Attenuation | None = None
     """How murky the water is, where the glow tells."""
+    remarks: tuple[str, ...] = ()
+    """What is odd about the recording, with its cure; sentences for the user."""

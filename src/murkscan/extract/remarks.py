@@ -1,0 +1,144 @@
+"""What is odd about a recording, in plain words with their cure."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from jaxtyping import Float
+
+from ..types.arrays import Scalars
+from ..types.background import Noise
+from ..types.frame import Frame
+from ..types.laser import Axis
+from ..types.stripe import Stripe
+from .glow import average_blocks, is_behind
+from .scan_lines import ScanLines
+
+_LIT = 0.2
+"""Share of white from which the darker half of a picture is lit by something else."""
+_DARK = 3.0
+"""Standard deviations of its noise above its median that a black frame's brightest pixels reach."""
+_STEP = 1.3
+"""Ratio of the glow's brightness over frames from which the exposure has changed."""
+_MOVED = 0.25
+"""Change of the glow's pattern, as a share of it, from which it lies elsewhere."""
+_SEEN = 1.5
+"""Grey levels above the darkest from which glow is glow."""
+_FEWEST = 200
+"""Places that two frames must share to be compared."""
+
+Levels = Float[np.ndarray, "frames places"]
+
+
+def find_remarks(
+    frames: Sequence[Frame], stripes: Sequence[Stripe], axis: Axis, noise: Noise, *, near: int
+) -> tuple[str, ...]:
+    """Look for what makes a recording worse than it could be.
+
+    Args:
+        frames: Frames spread over the recording, in order.
+        stripes: What was found in each.
+        axis: The camera's axis along which the laser sits.
+        noise: Of a pixel.
+        near: -1 or 1, the way along scan lines in which nearer surfaces are seen.
+
+    Returns:
+        Sentences that say what was seen and what to do; none for a good recording.
+    """
+    remarks = [*_about_stripes(frames, stripes), *_about_light(frames, noise)]
+    glow = _gather_glow(frames, stripes, axis, noise, near)
+    if glow.shape[1] >= _FEWEST:
+        remarks += _about_glow(glow, [frame.index for frame in frames if _is_like(frame, frames)])
+    return tuple(remarks)
+
+
+def _about_stripes(frames: Sequence[Frame], stripes: Sequence[Stripe]) -> list[str]:
+    remarks = []
+    if not any(len(stripe) for stripe in stripes):
+        remarks.append(
+            f"None of the {len(frames)} frames looked at first shows a stripe: was the laser on, "
+            "and does it cross the picture?"
+        )
+    if len(frames) == 1:
+        remarks.append(
+            "There is one frame only, so that nothing but the stripe's own length tells it from "
+            "snow; record a film."
+        )
+    return remarks
+
+
+def _about_light(frames: Sequence[Frame], noise: Noise) -> list[str]:
+    remarks = []
+    middle = np.array([float(np.median(frame.image)) for frame in frames])
+    bright = np.array([float(np.quantile(frame.image, 0.9999)) for frame in frames])
+    spread = np.sqrt(np.maximum(noise.fixed + noise.gain * middle, noise.least))
+    black = int(np.sum(bright <= middle + _DARK * spread + 2.0))
+    if black:
+        remarks.append(f"{black} of the {len(frames)} frames looked at first are black or even.")
+    if np.median(middle) > _LIT * noise.white:
+        remarks.append(
+            f"Something beside the laser lights the picture: half of it is brighter than "
+            f"{np.median(middle):.0f} of {noise.white:.0f} grey levels. Turn lamps off, wait for "
+            "dusk or shade the camera: their light is noise."
+        )
+    return remarks
+
+
+def _gather_glow(
+    frames: Sequence[Frame], stripes: Sequence[Stripe], axis: Axis, noise: Noise, near: int
+) -> Levels:
+    """Give the glow of frames with the same rows, where all show it and it is bright enough."""
+    levels = []
+    for frame, stripe in zip(frames, stripes, strict=True):
+        if _is_like(frame, frames):
+            lines = ScanLines.of(frame, axis, binning=1, white=noise.white)
+            behind = is_behind(lines, stripe, near)
+            levels.append(np.where(behind, np.nan, average_blocks(lines, noise)).ravel())
+    stack = np.stack(levels)
+    shown = np.isfinite(stack).sum(axis=0) >= max(2, len(stack) // 2)
+    stack = stack[:, shown]
+    if stack.size == 0:
+        return stack
+    stack = stack - np.nanmin(stack)
+    return stack[:, np.nanmedian(stack, axis=0) > _SEEN]
+
+
+def _is_like(frame: Frame, frames: Sequence[Frame]) -> bool:
+    return frame.first_row == frames[0].first_row and frame.image.shape == frames[0].image.shape
+
+
+def _about_glow(glow: Levels, indices: Sequence[int]) -> list[str]:
+    usual = np.nanmedian(glow, axis=0)
+    exposure = np.array([_ratio(one / usual) for one in glow])
+    known = exposure[np.isfinite(exposure)]
+    remarks = []
+    if len(known) > 1 and known.max() > _STEP * known.min():
+        remarks.append(
+            f"The picture's brightness changes by a factor of {known.max() / known.min():.1f} "
+            "while the water's does not: fix exposure and gain, so that signals can be compared."
+        )
+    pattern = glow / exposure[:, None]
+    change = [_change(pattern, cut) for cut in range(1, len(pattern))]
+    if change and np.nanmax([0.0, *change]) > _MOVED:
+        cut = int(np.nanargmax(change)) + 1
+        remarks.append(
+            f"The glow lies elsewhere from about frame {indices[cut]} on: camera or laser has "
+            "moved in its mount. Calibrate anew, and scan what comes before and after apart."
+        )
+    return remarks
+
+
+def _ratio(values: Scalars) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.median(known)) if len(known) >= _FEWEST else float("nan")
+
+
+def _change(pattern: Levels, cut: int) -> float:
+    """Give by how much the usual pattern differs before and after a cut, of three frames each."""
+    if not 3 <= cut <= len(pattern) - 3:
+        return float("nan")
+    shown = np.isfinite(pattern[:cut]).any(axis=0) & np.isfinite(pattern[cut:]).any(axis=0)
+    if shown.sum() < _FEWEST:
+        return float("nan")
+    before = np.nanmedian(pattern[:cut, shown], axis=0)
+    after = np.nanmedian(pattern[cut:, shown], axis=0)
+    return float(np.median(np.abs(before - after)) / np.median(before + after) * 2)
