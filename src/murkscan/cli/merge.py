@@ -25,7 +25,7 @@ def merge(
     Parameters
     ----------
     passes
-        Folders of scans, or clouds as .ply, .las, .laz, .e57 or .xyz in metres. One alone is
+        Folders of scans, or clouds as .ply, .las, .laz, .e57, .xyz or .csv in metres. One alone is
         imported.
     out
         A new folder for the merged cloud.

@@ -9,19 +9,19 @@ from ..types.cloud import PointCloud
 from .cloud_columns import BLOCK
 from .e57 import import_pye57, iterate_e57, writing_e57
 from .las import import_laspy, iterate_las, writing_las
-from .ply import writing_cloud
-from .ply_foreign import iterate_ply
-from .xyz import iterate_xyz, writing_xyz
+from .ply_foreign import iterate_ply, writing_shown_ply
+from .xyz import iterate_xyz, writing_csv, writing_xyz
 
-CLOUD_SUFFIXES = (".ply", ".las", ".laz", ".e57", ".xyz")
+CLOUD_SUFFIXES = (".ply", ".las", ".laz", ".e57", ".xyz", ".csv")
 """The formats that are read and written."""
 
 _WRITERS: dict[str, Callable[[Path], AbstractContextManager[Callable[[PointCloud], None]]]] = {
-    ".ply": writing_cloud,
+    ".ply": writing_shown_ply,
     ".las": writing_las,
     ".laz": writing_las,
     ".e57": writing_e57,
     ".xyz": writing_xyz,
+    ".csv": writing_csv,
 }
 
 
@@ -30,10 +30,12 @@ def writing_cloud_file(
 ) -> AbstractContextManager[Callable[[PointCloud], None]]:
     """Write a cloud block by block, in the format of the suffix.
 
-    The file appears whole when the context ends, or not at all.
+    The file appears whole when the context ends, or not at all. XYZ keeps positions and normals
+    only. In PLY the names of the scalar fields begin with `scalar_`, as CloudCompare has them, and
+    `signal` stands there a second time as `quality`, the one field that MeshLab shows.
 
     Args:
-        path: The file; its suffix is one of .ply, .las, .laz, .e57 and .xyz.
+        path: The file; its suffix is one of .ply, .las, .laz, .e57, .xyz and .csv.
 
     Raises:
         InputError: The suffix is another.
@@ -50,7 +52,7 @@ def iterate_cloud_file(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud
     Columns that the file does not have say nothing: no normals, signal 0, posterior 1, sigma 0.
 
     Args:
-        path: The file; its suffix is one of .ply, .las, .laz, .e57 and .xyz.
+        path: The file; its suffix is one of .ply, .las, .laz, .e57, .xyz and .csv.
         block: Points at a time, at most.
 
     Raises:
@@ -65,7 +67,7 @@ def iterate_cloud_file(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud
         return iterate_ply(path, block=block)
     if suffix == ".e57":
         return iterate_e57(path, block=block)
-    if suffix == ".xyz":
+    if suffix in (".xyz", ".csv"):
         return iterate_xyz(path, block=block)
     return iterate_las(path, block=block)
 

@@ -39,18 +39,33 @@ def writing_cloud(path: Path) -> Iterator[Callable[[PointCloud], None]]:
     Raises:
         DeviceError: The disk is full or cannot be written.
     """
+    with writing_rows(path, COLUMNS) as write:
+        yield lambda cloud: write(as_rows(cloud))
+
+
+@contextmanager
+def writing_rows(path: Path, columns: np.dtype[np.void]) -> Iterator[Callable[[np.ndarray], None]]:
+    """Write the rows of a table as the points of a PLY file; see `writing_cloud`.
+
+    Args:
+        path: The file.
+        columns: What every row has.
+
+    Raises:
+        DeviceError: The disk is full or cannot be written.
+    """
     count = 0
     with replacing(path) as aside, aside.open("wb") as file:
-        file.write(_header(0))
+        file.write(_header(0, columns))
 
-        def write(cloud: PointCloud) -> None:
+        def write(rows: np.ndarray) -> None:
             nonlocal count
-            count += len(cloud)
-            file.write(as_rows(cloud).data)
+            count += len(rows)
+            file.write(rows.data)
 
         yield write
         file.seek(0)
-        file.write(_header(count))
+        file.write(_header(count, columns))
 
 
 def load_cloud(path: Path) -> PointCloud:
@@ -85,11 +100,11 @@ def iterate_cloud(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud]:
             yield from_columns({name: rows[name] for name in COLUMNS.names or ()})
 
 
-def _header(count: int) -> bytes:
+def _header(count: int, columns: np.dtype[np.void]) -> bytes:
     # The comment makes room, so that the number of points may be written last.
     room = " " * (_DIGITS - len(str(count)))
     lines = ["ply", _FORMAT, f"comment murkscan: metres{room}", f"element vertex {count}"]
-    lines += [f"property {_TYPES[COLUMNS[name].str]} {name}" for name in COLUMNS.names or ()]
+    lines += [f"property {_TYPES[columns[name].str]} {name}" for name in columns.names or ()]
     return "\n".join([*lines, "end_header", ""]).encode("ascii")
 
 

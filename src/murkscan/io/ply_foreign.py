@@ -1,6 +1,7 @@
-"""Points of PLY files that other programs wrote: text or binary, whatever else they hold."""
+"""PLY files for other programs, and points of those that they wrote, in text or binary."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
@@ -9,7 +10,8 @@ import numpy as np
 
 from ..errors import FormatError
 from ..types.cloud import PointCloud
-from .cloud_columns import BLOCK, from_columns, known_name
+from .cloud_columns import BLOCK, COLUMNS, SCALARS, as_rows, from_columns, known_name
+from .ply import writing_rows
 
 _TYPES = {
     **dict.fromkeys(("char", "int8"), "i1"),
@@ -26,6 +28,35 @@ _LONGEST_HEADER = 1000
 _LONGEST_LINE = 4000
 _SHORTEST_VALUE = 2
 """Bytes of a number in a text file and of what parts it from the next."""
+
+
+_SHOWN = np.dtype(
+    [(f"scalar_{name}" if name in SCALARS else name, COLUMNS[name]) for name in COLUMNS.names or ()]
+    + [("quality", "<f4")]
+)
+"""The columns of cloud.ply with names that CloudCompare shows without being asked, and the one
+scalar field that MeshLab shows: the signal."""
+
+
+@contextmanager
+def writing_shown_ply(path: Path) -> Iterator[Callable[[PointCloud], None]]:
+    """Write a cloud block by block as MeshLab and CloudCompare show it.
+
+    The file appears whole when the context ends, or not at all.
+
+    Raises:
+        DeviceError: The disk is full or cannot be written.
+    """
+    with writing_rows(path, _SHOWN) as write:
+
+        def write_cloud(cloud: PointCloud) -> None:
+            rows, ours = np.empty(len(cloud), _SHOWN), as_rows(cloud)
+            for name, shown in zip(COLUMNS.names or (), _SHOWN.names or (), strict=False):
+                rows[shown] = ours[name]
+            rows["quality"] = cloud.signal
+            write(rows)
+
+        yield write_cloud
 
 
 @dataclass(frozen=True)

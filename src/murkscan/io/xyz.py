@@ -1,4 +1,4 @@
-"""Points as text, one a line: what every program reads."""
+"""Points as text, one a line: .xyz for every program, .csv with all columns."""
 
 import re
 from collections.abc import Callable, Iterator
@@ -19,25 +19,44 @@ from .cloud_columns import BLOCK, COLUMNS, as_rows, from_columns, known_name
 _LONGEST_LINE = 4000
 _UNIT = 1e-3
 """How far three numbers may be from unit length and still be a normal."""
-_OPTIONS = pc.WriteOptions(include_header=False, delimiter=" ", quoting_style="none")
+_NAMES = [*(COLUMNS.names or ())]
+_SIX = "%.7f %.7f %.7f %.6f %.6f %.6f"
+_OPTIONS = pc.WriteOptions(include_header=False, quoting_style="none")
 
 
 @contextmanager
 def writing_xyz(path: Path) -> Iterator[Callable[[PointCloud], None]]:
-    """Write a cloud block by block: the columns of cloud.ply, named in the first line.
+    """Write positions [m] and normals, six numbers a line and nothing else: so all can read it.
 
-    The line begins with `//`, as CloudCompare has it. The file appears whole when the context
-    ends, or not at all.
+    Positions have steps of 0.1 µm. Every number has its point: CloudCompare takes a whole one for
+    the number of the point. The file appears whole when the context ends, or not at all.
 
     Raises:
         DeviceError: The disk is full or cannot be written.
     """
     with replacing(path) as aside, aside.open("wb") as file:
-        file.write(f"//{' '.join(COLUMNS.names or ())}\n".encode("ascii"))
+
+        def write(cloud: PointCloud) -> None:
+            np.savetxt(file, np.concatenate([cloud.points, cloud.normals], axis=1), _SIX)
+
+        yield write
+
+
+@contextmanager
+def writing_csv(path: Path) -> Iterator[Callable[[PointCloud], None]]:
+    """Write all columns of cloud.ply parted by commas, below a line with their names.
+
+    The file appears whole when the context ends, or not at all.
+
+    Raises:
+        DeviceError: The disk is full or cannot be written.
+    """
+    with replacing(path) as aside, aside.open("wb") as file:
+        file.write((",".join(_NAMES) + "\n").encode("ascii"))
 
         def write(cloud: PointCloud) -> None:
             rows = as_rows(cloud)
-            table = pa.table({name: np.ascontiguousarray(rows[name]) for name in rows.dtype.names})
+            table = pa.table({name: np.ascontiguousarray(rows[name]) for name in _NAMES})
             pc.write_csv(table, file, _OPTIONS)
 
         yield write
@@ -46,8 +65,8 @@ def writing_xyz(path: Path) -> Iterator[Callable[[PointCloud], None]]:
 def iterate_xyz(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud]:
     """Read points from text: numbers parted by blanks, tabs, commas or semicolons.
 
-    The first line may name the columns, after # or //. Without names the first three are x, y and
-    z [m]; of six, the last three are the normal if they have unit length.
+    The first line may name the columns, also after # or //. Without names the first three are x, y
+    and z [m]; of six, the last three are the normal if they have unit length.
 
     Raises:
         FormatError: A line holds something other than as many numbers as the first.

@@ -18,7 +18,7 @@ def export_cloud(
 
     Args:
         project: A scan with a finished cloud stage.
-        path: The file; its suffix is one of .ply, .las, .laz, .e57 and .xyz.
+        path: The file; its suffix is one of .ply, .las, .laz, .e57, .xyz and .csv.
         voxel: Edge of the voxels to thin to [m]; None writes all points.
         progress: Told how many points are written.
 
