@@ -1,0 +1,285 @@
+"""Clouds of a project: in blocks, exported, and merged from passes."""
+
+import json
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from murkscan.cli.main import run
+from murkscan.errors import Degenerate, FormatError, InputError, MissingResult
+from murkscan.io.cloud_files import load_cloud_file, writing_cloud_file
+from murkscan.io.ply import save_cloud
+from murkscan.project import Project
+from murkscan.survey.cloud import build_cloud
+from murkscan.survey.export import export_cloud
+from murkscan.survey.merge import merge_passes
+from murkscan.survey.profile_blocks import cut_blocks
+from murkscan.types.pose import Pose
+from murkscan.types.profile import Profile
+
+from ..scans import plane, scan, scan_cloud
+from ..scenes import air_rig
+
+
+def waves(x, y):
+    return 0.5 + 0.008 * np.sin(60 * x) * np.cos(50 * y)
+
+
+def as_project(root, cloud):
+    """A project of which only the cloud is there."""
+    project = Project(root)
+    project.save_scan({"recording": {}, "rig": {}, "versions": {}})
+    stage = project.stage("cloud", settings={}, inputs={})
+    stage.begin()
+    save_cloud(root / "cloud/cloud.ply", cloud)
+    stage.finish({"points": len(cloud), "outliers": 0}, since=0.0)
+    return project
+
+
+@pytest.fixture(scope="module")
+def cloud():
+    return scan_cloud(waves, noise=1e-4)
+
+
+@pytest.fixture
+def project(tmp_path, cloud):
+    return as_project(tmp_path / "scan", cloud)
+
+
+def scanned(root, profile, trajectory, *, parts):
+    """A project with finished extract, triangulate and motion, cut into parts."""
+    project = Project(root)
+    project.save_scan({"recording": {}, "rig": {}, "versions": {}})
+    extract = project.stage("extract", settings={"laser": 0}, inputs={})
+    extract.begin()
+    extract.finish({"frames": 120, "points": len(profile), "skips": []}, since=0.0)
+    triangulate = project.stage("triangulate", settings={}, inputs={"extract": extract.digest})
+    triangulate.begin()
+    for number, frames in enumerate(np.array_split(np.unique(profile.frame), parts)):
+        project.save_profile_part(number, profile[np.isin(profile.frame, frames)])
+    triangulate.finish({"points": len(profile), "dropped": 0}, since=0.0)
+    settings = {"motion": {"type": "ConstantSpeed"}}
+    motion = project.stage("motion", settings=settings, inputs={"extract": extract.digest})
+    motion.begin()
+    project.save_trajectory(trajectory)
+    motion.finish({}, since=0.0)
+    return project
+
+
+@pytest.mark.parametrize("block", [2000, 5000, 23_000])
+def test_a_scan_worked_on_in_blocks_is_what_the_whole_is(tmp_path, block):
+    profile, trajectory = scan(plane)
+    spikes = np.random.default_rng(0).random(len(profile)) < 0.01
+    profile.points[spikes] *= 1.1
+    rig = air_rig(axis="x")
+    whole = scanned(tmp_path / "whole", profile, trajectory, parts=12)
+    cut = scanned(tmp_path / "cut", profile, trajectory, parts=12)
+    counts = build_cloud(whole, rig)
+    assert build_cloud(cut, rig, block=block) == counts
+    one, other = whole.load_cloud(), cut.load_cloud()
+    np.testing.assert_array_equal(one.points, other.points)
+    # Without noise tangents reach as far as the usual spacing says, which is the same everywhere.
+    np.testing.assert_allclose(one.normals, other.normals, atol=1e-6)
+    for number in (0, 57, 119):
+        name = f"cloud/frames/frame_{number:06d}.ply"
+        assert (whole.root / name).read_bytes() == (cut.root / name).read_bytes()
+
+
+def test_outliers_are_counted_for_each_cause(tmp_path):
+    profile, trajectory = scan(plane)
+    random = np.random.default_rng(0)
+    spikes, unsure = random.random((2, len(profile))) < 0.01
+    profile.points[spikes] *= 1.1
+    profile = replace(profile, posterior=np.where(unsure, 0.2, 0.9).astype(np.float32))
+    result = build_cloud(scanned(tmp_path, profile, trajectory, parts=2), air_rig(axis="x"))
+    assert result["outliers_by_posterior"] == unsure.sum()
+    assert result["outliers_by_density"] == pytest.approx((spikes & ~unsure).sum(), rel=0.1)
+    causes = [value for name, value in result.items() if name.startswith("outliers_by_")]
+    assert sum(causes) == result["outliers"] == len(profile) - result["points"]
+
+
+def test_a_scan_without_a_point_is_an_empty_cloud(tmp_path):
+    profile, trajectory = scan(plane)
+    result = build_cloud(scanned(tmp_path, profile[:0], trajectory, parts=1), air_rig(axis="x"))
+    assert (result["points"], len(Project(tmp_path).load_cloud())) == (0, 0)
+
+
+def test_blocks_hold_every_frame_once():
+    profile, _ = scan(plane)
+    parts = [profile[profile.frame == number] for number in range(120)]
+    for size in (1, 500, 10_000, 10**9):
+        blocks = list(cut_blocks(parts, block=size))
+        bodies = [block.profile[block.is_body] for block in blocks]
+        np.testing.assert_array_equal(Profile.concatenate(bodies).points, profile.points)
+        assert all(len(block.profile) == len(block.is_body) for block in blocks)
+    assert len(blocks) == 1
+
+
+def test_an_export_holds_the_cloud(project, tmp_path, cloud):
+    assert export_cloud(project, tmp_path / "dive.laz") == len(cloud)
+    np.testing.assert_allclose(
+        load_cloud_file(tmp_path / "dive.laz").points, cloud.points, atol=6e-6
+    )
+
+
+def test_a_thinned_export_is_smaller_and_lies_on_the_same_surface(project, tmp_path, cloud):
+    count = export_cloud(project, tmp_path / "dive.ply", voxel=3e-3)
+    thin = load_cloud_file(tmp_path / "dive.ply")
+    assert count == len(thin) < 0.5 * len(cloud)
+    # Waves of 8 mm and 60 rad/m bend by 29 /m: over half of 3 mm's diagonal 0.1 mm at most.
+    off = thin.points[:, 2] - waves(thin.points[:, 0], thin.points[:, 1])
+    assert np.sqrt(np.mean(off**2)) < 1e-4
+
+
+def test_exports_without_sense_are_refused_and_write_nothing(project, tmp_path, cloud):
+    with pytest.raises(InputError, match="among the files of the cloud stage"):
+        export_cloud(project, project.root / "cloud/other.ply")
+    with pytest.raises(InputError, match="no suffix of a cloud"):
+        export_cloud(project, tmp_path / "dive.txt")
+    empty = as_project(tmp_path / "empty", cloud[:0])
+    with pytest.raises(InputError, match="no points; there is nothing to export"):
+        export_cloud(empty, tmp_path / "dive.ply")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["empty", "scan"]
+
+
+def drifted(cloud, *, seed=0):
+    """The same wall once more, with a log that is millimetres off."""
+    random = np.random.default_rng(seed)
+    turn = Rotation.from_rotvec(random.normal(0, 0.003, 3)).as_matrix()
+    pose = Pose(turn, random.normal(0, 0.001, 3))
+    again = pose @ cloud.points
+    return replace(cloud, points=again, normals=(cloud.normals @ turn.T).astype(np.float32)), pose
+
+
+def test_two_passes_become_one_in_the_frame_of_the_first(project, tmp_path, cloud):
+    second, pose = drifted(scan_cloud(waves, noise=1e-4, spacing=1.1e-3))
+    as_project(tmp_path / "second", second)
+    out = tmp_path / "merged"
+    result = merge_passes([project.root, tmp_path / "second"], out)
+    merged = Project(out).load_cloud()
+    assert len(merged) == result["points"] == len(cloud) + len(second)
+    moved = merged[len(cloud) :]
+    # 0.1 mm of noise along the ray; the correction is known to hundredths of a millimetre.
+    off = moved.points[:, 2] - waves(moved.points[:, 0], moved.points[:, 1])
+    assert np.sqrt(np.mean(off**2)) < 1.2e-4
+    found = result["passes"][1]["alignment"]
+    np.testing.assert_allclose(np.array(found["rotation"]) @ pose.rotation, np.eye(3), atol=1e-3)
+    assert found["open"] == []
+    # What stage.json says is what was returned, and the frames of the passes do not mix.
+    note = json.loads((out / "cloud/stage.json").read_text())
+    assert note["result"]["passes"][1]["alignment"] == found
+    first, other = (one["frames"] for one in result["passes"])
+    assert first[1] + 2 < other[0]
+    assert other == [int(moved.frame.min()), int(moved.frame.max())]
+
+
+def test_a_plain_wall_says_what_it_leaves_open(tmp_path):
+    for name, spacing in (("a", 1e-3), ("b", 1.1e-3)):
+        as_project(tmp_path / name, scan_cloud(plane, noise=1e-4, spacing=spacing))
+    result = merge_passes([tmp_path / "a", tmp_path / "b"], tmp_path / "out")
+    assert "open, so as logged: sliding along" in result["passes"][1]["words"]
+    assert len(result["passes"][1]["alignment"]["open"]) == 3
+
+
+def test_a_pass_that_meets_only_the_third_waits_for_it(tmp_path, cloud):
+    """The first and the second share nothing; the third lies between them."""
+    x = cloud.points[:, 0]
+    for name, which in (("a", x < -0.02), ("b", x > 0.02), ("c", (x > -0.06) & (x < 0.06))):
+        as_project(tmp_path / name, cloud[which])
+    paths = [tmp_path / name for name in "abc"]
+    result = merge_passes(paths, tmp_path / "out", reach=0.005)
+    assert [one["path"] for one in result["passes"]] == [str(path) for path in paths]
+    assert result["passes"][1]["alignment"]["overlap"] > 0.5
+
+
+def test_passes_without_overlap_are_refused_unless_the_log_is_trusted(project, tmp_path, cloud):
+    far = replace(cloud, points=cloud.points + np.array([0, 0, 1.0]))
+    as_project(tmp_path / "far", far)
+    paths = [project.root, tmp_path / "far"]
+    with pytest.raises(Degenerate, match="far: The two clouds do not overlap"):
+        merge_passes(paths, tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+    assert merge_passes(paths, tmp_path / "out", align=False)["points"] == 2 * len(cloud)
+
+
+def test_what_cannot_be_merged_is_one_sentence_and_writes_nothing(project, tmp_path, cloud):
+    out = tmp_path / "out"
+    (tmp_path / "empty.xyz").write_text("")
+    (tmp_path / "lies.ply").write_bytes(
+        b"ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\n"
+        b"property float y\nproperty float z\nend_header\n"
+    )
+    as_project(tmp_path / "profile", cloud[cloud.frame == 3][:20])
+    for other, error, says in (
+        ("empty.xyz", InputError, "no points; leave it out"),
+        ("lies.ply", FormatError, "declares 4000000000 points"),
+        ("nowhere", MissingResult, "does not exist"),
+        ("profile", Exception, "Need at least 30 points"),
+    ):
+        with pytest.raises(error, match=says):
+            merge_passes([project.root, tmp_path / other], out)
+        assert not out.exists()
+    with pytest.raises(InputError, match="holds a scan"):
+        merge_passes([project.root, project.root], project.root)
+
+
+def test_points_of_others_that_are_not_finite_are_left_out(project, tmp_path, cloud):
+    broken = replace(cloud, points=cloud.points.copy())
+    broken.points[::2] = np.nan
+    with writing_cloud_file(tmp_path / "other.ply") as write:
+        write(broken)
+    result = merge_passes([project.root, tmp_path / "other.ply"], tmp_path / "out")
+    assert result["points"] == len(cloud) + len(cloud) // 2
+
+
+def test_the_commands_merge_export_and_go_on(project, tmp_path, capsys, cloud):
+    with writing_cloud_file(tmp_path / "other.laz") as write:
+        write(cloud)
+    out = str(tmp_path / "hull")
+    passes = [str(project.root), str(tmp_path / "other.laz")]
+    assert run(["merge", *passes, "--out", out, "--voxel-mm", "2"]) == 0
+    said = capsys.readouterr().out
+    assert "stays where it is" in said
+    assert "mm RMS apart" in said
+    assert run(["cloud", out, "--export", str(tmp_path / "hull.e57")]) == 0
+    assert f"{len(Project(tmp_path / 'hull').load_cloud()):,}" in capsys.readouterr().out
+    assert (tmp_path / "hull.e57").stat().st_size > 0
+    for wrong, says in (
+        (["merge", "--out", out], "two scans or more"),
+        (["merge", *passes, "--out", out, "--voxel-mm", "0"], "--voxel-mm must be above 0"),
+        (["cloud", out, "--voxel-mm", "3"], "--export FILE"),
+        (["cloud", out, "--export", "a.docx"], "no suffix of a cloud"),
+    ):
+        assert run(wrong) == 2
+        assert says in capsys.readouterr().err
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="resident memory is counted in kB on Linux")
+def test_an_export_does_not_hold_the_cloud_in_memory(tmp_path):
+    """1.5 million points are 92 MB as rows, and 300 MB and more as a cloud that is copied."""
+    code = (
+        "import resource, sys; from pathlib import Path; import numpy as np\n"
+        "sys.path.insert(0, sys.argv[2])\n"
+        "from tests.survey.test_cloud import as_project, export_cloud, scan_cloud, plane\n"
+        "from murkscan.types.cloud import PointCloud\n"
+        "root = Path(sys.argv[1]); cloud = scan_cloud(plane)\n"
+        "project = as_project(root / 'scan', cloud)\n"
+        "stage = project.finished('cloud')\n"
+        "with project.writing_cloud() as write:\n"
+        "    for _ in range(60): write(cloud)\n"
+        "stage.finish({'points': 60 * len(cloud), 'outliers': 0}, since=0.0)\n"
+        "export_cloud(as_project(root / 'small', cloud), root / 'small.laz', voxel=0.01)\n"
+        "before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
+        "export_cloud(project, root / 'dive.laz')\n"
+        "export_cloud(project, root / 'thin.laz', voxel=0.005)\n"
+        "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)\n"
+    )
+    command = [sys.executable, "-c", code, str(tmp_path), str(Path(__file__).parents[2])]
+    grown = int(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
+    # Two blocks of half a million rows with their sums: 100 bytes a point each.
+    assert grown < 250_000
