@@ -12,6 +12,7 @@ def view(
     out: Path,
     *,
     other: Annotated[Path | None, Parameter(name="--with")] = None,
+    deviation: str = "deviation",
     points: int = 2_000_000,
 ) -> None:
     """Draw a scan's surface from seven sides, and write a page to turn, cut and measure it.
@@ -22,6 +23,9 @@ def view(
         Folder of the scan, with a finished mesh stage.
     other
         Folder of another scan in the same world, to change to on the page: before and after.
+    deviation
+        Name of the measurement in OUT/measure by whose deviations the page is coloured, if there is
+        one.
     points
         Points, and vertices of the surface, that the page holds of a scan; of more it shows a fair
         choice.
@@ -34,6 +38,7 @@ def view(
         result = draw_views(
             Project(out),
             other=None if other is None else Project(other),
+            deviation=deviation,
             most=points,
             progress=progress,
         )

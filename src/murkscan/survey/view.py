@@ -1,29 +1,31 @@
 """Show a scan's surface: pictures for print, and a page on which it is turned and measured."""
 
 import time
-from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
 from ..page import Gallery, Note, Picture, Section, render_page
 from ..project import Project
-from ..view import MOST, PICTURES, Model, draw_pictures, model_of_scan, render_viewer
+from ..view import MOST, PICTURES, draw_pictures, render_viewer
+from .merge import is_merged
 from .progress import Progress, silent
-from .shift_field import trace_shift_field
+from .shown import DEVIATION, deviation_digest, load_model, title_of
 
 
 def draw_views(
     project: Project,
     *,
     other: Project | None = None,
+    deviation: str = DEVIATION,
     most: int = MOST,
     progress: Progress = silent,
 ) -> dict[str, Any]:
     """Run the view stage: nine pictures, the page that shows them, and the page with the model.
 
     Args:
-        project: A scan with a finished mesh stage.
+        project: A scan, or a merged cloud, with a finished mesh stage.
         other: Another one, in the same world, to change to on the page: before and after.
+        deviation: Name of the measurement whose deviations the page shows, if it has been made.
         most: Points, and vertices of the surface, that the page holds of a scan.
         progress: Told how many pictures are drawn.
 
@@ -33,13 +35,14 @@ def draw_views(
 
     Raises:
         MissingResult: The mesh stage has not been finished.
-        InputError: There are to be no points on the page.
+        InputError: There are to be no points on the page, or a deviation has not been measured.
         DeviceError: The disk is full.
     """
     if most < 1:
         raise InputError(f"The page must hold one point or more, got {most}.")
-    scans = [project] if other is None else [project, other]
     inputs = {"mesh": project.finished("mesh").digest}
+    if (digest := deviation_digest(project, deviation)) is not None:
+        inputs["deviation"] = digest
     if other is not None:
         inputs["other"] = f"{other.root} {other.finished('mesh').digest}"
     stage = project.stage("view", settings={"most": most}, inputs=inputs)
@@ -48,12 +51,14 @@ def draw_views(
     since = time.monotonic()
     stage.begin()
     names = _draw(project, progress)
-    title = _title(project)
+    title = title_of(project)
     project.save_pictures_page(_pictures_page(title, names))
-    models = [_model(one, most) for one in scans if one.finished("cloud").counts()["points"]]
+    shown = load_model(project, most=most, deviation=deviation)
+    before = None if other is None else load_model(other, most=most)
+    models = [model for model in (shown, before) if model is not None]
     page = render_viewer(models, title=title, pictures="pictures.html") if models else _empty(title)
     project.save_view_page(page)
-    result = {"pictures": names, "points": models[0].num_measured if models else 0}
+    result = {"pictures": names, "points": shown.num_measured if shown else 0}
     stage.finish(result, since=since)
     return result
 
@@ -62,29 +67,12 @@ def _draw(project: Project, progress: Progress) -> list[str]:
     names: list[str] = []
     if project.finished("mesh").counts()["faces"]:
         progress("view", 0, len(PICTURES))
-        for name, picture in draw_pictures(project.load_mesh(), project.load_trajectory()):
+        trajectory = None if is_merged(project) else project.load_trajectory()
+        for name, picture in draw_pictures(project.load_mesh(), trajectory):
             project.save_picture(name, picture)
             names.append(name)
             progress("view", len(names), len(PICTURES))
     return names
-
-
-def _model(project: Project, most: int) -> Model:
-    has_surface = project.finished("mesh").counts()["faces"] > 0
-    return model_of_scan(
-        _title(project),
-        project.load_cloud(),
-        mesh=project.load_mesh() if has_surface else None,
-        trajectory=project.load_trajectory(),
-        frames=project.load_frame_times(),
-        is_timed=project.load_scan()["recording"]["is_timed"],
-        shift_field=trace_shift_field(project),
-        most=most,
-    )
-
-
-def _title(project: Project) -> str:
-    return Path(project.load_scan()["recording"]["path"]).name
 
 
 def _pictures_page(title: str, names: list[str]) -> str:

@@ -27,6 +27,7 @@ def model_of_scan(
     is_timed: bool = True,
     shift_field: ShiftField | None = None,
     most: int = MOST,
+    num_points: int | None = None,
 ) -> Model:
     """Join a scan's points with its surface, to be shown together.
 
@@ -40,6 +41,7 @@ def model_of_scan(
         shift_field: How far points move with the rig's errors.
         most: Points and vertices that are kept, at most: of more points a fair choice, of more
             vertices one a cell.
+        num_points: Points that the scan has, where the cloud is a choice of them already.
 
     Returns:
         The model. A vertex of the surface that is no point takes what is known from the nearest.
@@ -72,7 +74,7 @@ def model_of_scan(
         views=standard_views(trajectory),
         spacing=usual_spacing(kept.points),
         shift_field=shift_field,
-        note=_note(cloud, kept, mesh, surface),
+        note=_note(num_points or len(cloud), kept, mesh, surface),
     )
 
 
@@ -108,18 +110,18 @@ def _path(times: Times, trajectory: Trajectory | None) -> Trajectory | None:
     return trajectory.at(np.clip(times, trajectory.times[0], trajectory.times[-1]))
 
 
-def _note(cloud: PointCloud, kept: PointCloud, mesh: Mesh | None, surface: Mesh) -> str:
+def _note(total: int, kept: PointCloud, mesh: Mesh | None, surface: Mesh) -> str:
     """Say what is left out or not there."""
     said = []
-    if len(kept) < len(cloud):
-        said.append(f"A fair choice of {len(kept):,} of the scan's {len(cloud):,} points.")
+    if len(kept) < total:
+        said.append(f"A fair choice of {len(kept):,} of the scan's {total:,} points.")
     if mesh is not None and len(surface.vertices) < len(mesh.vertices):
         said.append(
             f"The surface is drawn with {len(surface.vertices):,} of its "
             f"{len(mesh.vertices):,} vertices."
         )
     if len(surface.faces) == 0:
-        one = len(np.unique(cloud.frame)) == 1
+        one = len(np.unique(kept.frame)) == 1
         said.append(
             "Only one profile was seen: there is no surface, only its points."
             if one

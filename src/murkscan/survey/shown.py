@@ -1,0 +1,91 @@
+"""What the page shows of a scan, from what its stages have left."""
+
+import hashlib
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import InputError
+from ..io.deviation_files import load_deviation_ply
+from ..io.json_files import load_json
+from ..project import Project
+from ..types.cloud import PointCloud
+from ..view import Layer, Model, choose_fairly, model_of_scan
+from .measured import measure_file
+from .merge import is_merged
+from .shift_field import trace_shift_field
+
+DEVIATION = "deviation"
+"""The measurement that colours a scan unless another is named."""
+
+
+def load_model(project: Project, *, most: int, deviation: str = DEVIATION) -> Model | None:
+    """Load a scan to be shown; None where it has no points.
+
+    Args:
+        project: A scan, or a merged cloud, with a finished mesh stage.
+        most: Points, and vertices of the surface, to keep.
+        deviation: Name of the measurement whose deviations it is coloured by, if it has been made.
+
+    Raises:
+        MissingResult: A stage has not been finished.
+        FormatError: A file is damaged.
+    """
+    total = project.finished("cloud").counts()["points"]
+    if total == 0:
+        return None
+    has_surface = project.finished("mesh").counts()["faces"] > 0
+    is_scan = not is_merged(project)
+    model = model_of_scan(
+        title_of(project),
+        _choose_points(project, total, most),
+        num_points=total,
+        mesh=project.load_mesh() if has_surface else None,
+        trajectory=project.load_trajectory() if is_scan else None,
+        frames=project.load_frame_times() if is_scan else None,
+        is_timed=is_scan and project.load_scan()["recording"]["is_timed"],
+        shift_field=trace_shift_field(project) if is_scan else None,
+        most=most,
+    )
+    if deviation_digest(project, deviation) is None:
+        return model
+    points, values = load_deviation_ply(measure_file(project, deviation, "ply"))
+    if len(points) == 0:
+        return model
+    layer = Layer("deviation", values * 1e3, "mm", "RdBu_r", is_signed=True)
+    return model.with_layer(layer, at=points)
+
+
+def title_of(project: Project) -> str:
+    """Name a scan by its recording, and a merged cloud by its folder."""
+    return Path(project.load_scan()["recording"].get("path", project.root.resolve())).name
+
+
+def deviation_digest(project: Project, name: str) -> str | None:
+    """Give a short text that changes with a measured deviation.
+
+    None where there is none of this name, or none of the scan's present cloud.
+
+    Raises:
+        InputError: One is asked for that has not been measured.
+    """
+    file = measure_file(project, name)
+    is_there = file.exists() and measure_file(project, name, "ply").exists()
+    if is_there and load_json(file).get("inputs", {}).get("cloud") == project.finished("cloud").digest:
+        return hashlib.sha256(file.read_bytes()).hexdigest()[:16]
+    if name != DEVIATION:
+        raise InputError(
+            f"{file} is no deviation of the present cloud; run `murkscan measure {project.root} "
+            f"deviation … --name {name}` first."
+        )
+    return None
+
+
+def _choose_points(project: Project, total: int, most: int) -> PointCloud:
+    """Load a fair choice of a cloud that may be larger than memory."""
+    chosen, start, parts = choose_fairly(total, most), 0, []
+    for block in project.iterate_cloud():
+        low, high = np.searchsorted(chosen, [start, start + len(block)])
+        parts.append(block[chosen[low:high] - start])
+        start += len(block)
+    return PointCloud.concatenate(parts)
