@@ -153,7 +153,7 @@ def _decide(
     verdict: FieldVerdict = "undecided"
     for count in _RUNS:
         verdict = find_field_order(runs(count))
-        if verdict not in ("undecided", "interlaced"):
+        if verdict != "undecided" and verdict != "interlaced":
             return verdict
     return "top-first" if verdict == "interlaced" and flag == "progressive" else flag
 

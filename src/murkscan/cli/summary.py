@@ -19,6 +19,19 @@ def print_result(stage: str, result: dict[str, Any], where: Path) -> None:
     )  # fmt: skip
     print(f"{stage}: {counts + '; ' if counts else ''}{where}")
     print_skips(result.get("skips", []))
+    print_remarks(result)
+
+
+def print_remarks(extracted: dict[str, Any]) -> None:
+    """Say what is odd about the recording, and how murky the water was."""
+    for remark in extracted.get("remarks", []):
+        print(f"  note: {remark}")
+    if water := extracted.get("attenuation"):
+        low, high = water["between_per_m"]
+        print(
+            f"  water: the glow fades by {water['effective_per_m']:.2g} per metre, so the beam "
+            f"attenuation lies between {low:.2g} and {high:.2g} per metre"
+        )
 
 
 def print_skips(skips: list[tuple[int, int, str]]) -> None:
@@ -45,6 +58,7 @@ def print_summary(project: "Project") -> None:
         f"{found['frames_without_stripe']:,} without a stripe"
     )
     print_skips(found["skips"])
+    print_remarks(found)
     print(f"points     {cloud['points']:,}, {cloud['outliers']:,} outliers taken out")
     print(f"triangles  {mesh['faces']:,}")
     if not mesh["faces"]:

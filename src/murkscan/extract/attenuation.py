@@ -83,9 +83,16 @@ def estimate_attenuation(glow: Glow, rig: Rig, *, laser: int = 0) -> Attenuation
     effective = _fit(seen)
     groups = [_fit(seen, skip=group) for group in range(_GROUPS)]
     spread = math.sqrt((_GROUPS - 1) / _GROUPS * float(np.sum((np.array(groups) - effective) ** 2)))
-    once = [effective, _fit(_without_vignetting(seen, rig))]
-    once += [_fit(_look(glow, rig, laser, phase)) for phase in _PHASES]
-    often = [_fit(seen, albedo=albedo, broad=broad) for albedo in _ALBEDOS for broad in _BROAD]
+    looks = [seen, _without_vignetting(seen, rig)]
+    looks += [_look(glow, rig, laser, phase) for phase in _PHASES]
+    # What looks dark may be light that was scattered too often to fade.
+    once = [_fit(look, is_dark=dark) for look in looks for dark in (True, False)]
+    often = [
+        _fit(seen, albedo=albedo, broad=broad, is_dark=dark)
+        for albedo in _ALBEDOS
+        for broad in _BROAD
+        for dark in (True, False)
+    ]
     low, high = min(once) - 2 * spread, max(*once, *often) + 2 * spread
     return Attenuation(effective, max(low, 0.0), min(high, _LARGEST))
 
@@ -143,7 +150,14 @@ def _without_vignetting(seen: _Seen, rig: Rig) -> _Seen:
     return replace(seen, bright=seen.bright * (1 + _off_axis(seen.glow.pixels, rig)) ** 2)
 
 
-def _fit(seen: _Seen, *, skip: int = -1, albedo: float = 0.0, broad: float = 0.0) -> float:
+def _fit(
+    seen: _Seen,
+    *,
+    skip: int = -1,
+    albedo: float = 0.0,
+    broad: float = 0.0,
+    is_dark: bool = True,
+) -> float:
     """Fit the attenuation [1/m], with a brightness for each block and a common dark level.
 
     Args:
@@ -151,6 +165,7 @@ def _fit(seen: _Seen, *, skip: int = -1, albedo: float = 0.0, broad: float = 0.0
         skip: Group of blocks that is left out.
         albedo: Share of scattering in the attenuation whose forward part comes back.
         broad: Width up to which it comes back, as the tangent of an angle.
+        is_dark: Whether there is a dark level at all.
     """
     use = seen.glow.block % _GROUPS != skip
     level, block = seen.glow.level[use], seen.glow.block[use]
@@ -164,13 +179,15 @@ def _fit(seen: _Seen, *, skip: int = -1, albedo: float = 0.0, broad: float = 0.0
             now = replace(spread, scattering=attenuation * albedo)
             back = 1.0 / (1.0 + (spread.widths / broad) ** 2)
             light = light * (1.0 + now.weights(seen.laser_range, seen.camera_range) @ back)
-        return _misfit(light[use], level, weight, block)
+        return _misfit(light[use], level, weight, block, is_dark)
 
     found = minimize_scalar(misfit, bounds=(0.0, _LARGEST), method="bounded")
     return float(found.x)
 
 
-def _misfit(light: Scalars, level: Scalars, weight: Scalars, block: Indices) -> float:
+def _misfit(
+    light: Scalars, level: Scalars, weight: Scalars, block: Indices, is_dark: bool
+) -> float:
     """Give the least weighted sum of squares of level - K(block) · light - dark, with dark ≥ 0."""
 
     def total(values: Scalars) -> Float[np.ndarray, " blocks"]:
@@ -181,5 +198,5 @@ def _misfit(light: Scalars, level: Scalars, weight: Scalars, block: Indices) -> 
     bend = np.sum(total(np.ones_like(light)) - share * total(light))
     lift = np.sum(total(level) - share * total(light * level))
     least = np.sum(total(level**2) - rest * total(light * level))
-    dark = max(float(lift / max(bend, 1e-30)), 0.0)
+    dark = max(float(lift / max(bend, 1e-30)), 0.0) if is_dark else 0.0
     return float(least - 2 * dark * lift + dark**2 * bend)

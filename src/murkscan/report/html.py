@@ -54,7 +54,11 @@ def _headline(summary: ScanSummary) -> list[Block]:
     if model.size is not None:
         size = " × ".join(f"{1e3 * edge:.0f}" for edge in model.size)
         facts.append((size, "mm along x, y and z"))
-    return [*_verdict(summary), Facts(facts)]
+    if (water := summary.recorded.attenuation) is not None:
+        beam = f"per metre: attenuation of the water, from its glow, between {water.low:.2g} and"
+        facts.append((f"{water.effective:.2g}", f"{beam} {water.high:.2g}"))
+    odd = [Note(remark, "warning") for remark in summary.recorded.remarks]
+    return [*_verdict(summary), *odd, Facts(facts)]
 
 
 def _verdict(summary: ScanSummary) -> list[Block]:

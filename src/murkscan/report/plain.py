@@ -45,6 +45,14 @@ def _counts(summary: ScanSummary) -> dict[str, Any]:
             "size_px": list(recorded.size),
             "fields_per_picture": recorded.fields_per_picture,
             "is_timed": recorded.is_timed,
+            "remarks": list(recorded.remarks),
+        },
+        "attenuation_per_m": None
+        if (water := recorded.attenuation) is None
+        else {
+            "effective": _round(water.effective),
+            "low": _round(water.low),
+            "high": _round(water.high),
         },
         "frames": {
             "read": summary.num_frames,

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from ..types.background import Attenuation
 from ..types.cloud import PointCloud
 from ..types.frame_times import FrameTimes
 from ..types.laser import Axis
@@ -36,6 +37,10 @@ class Recorded:
     """Whether times are real; otherwise they count pictures."""
     skips: Sequence[tuple[int, int, str]] = ()
     """What could not be read: index of the first frame, how many frames, and why."""
+    remarks: Sequence[str] = ()
+    """What is odd about the recording, with its cure."""
+    attenuation: Attenuation | None = None
+    """How murky the water was, where the glow told."""
 
     @property
     def num_skipped(self) -> int:

@@ -61,7 +61,8 @@ def extract_recording(
         progress: Told of each part.
 
     Returns:
-        Counts: frames, skipped, frames_without_stripe, points; and the reasons of skips.
+        Counts: frames, skipped, frames_without_stripe, points; the reasons of skips; what is odd
+        about the recording, and how murky the water was, as far as the extractor tells.
 
     Raises:
         InputError: The recording is not of this rig.
@@ -85,7 +86,7 @@ def extract_recording(
     for part in _run(job, recording):
         progress("extract", (part + 1) * CHUNK, recording.num_frames)
     keep_overlays(project)
-    result = _count(project)
+    result = _count(project) | _tell(background)
     stage.finish(result, since=since)
     return result
 
@@ -200,6 +201,19 @@ def _cut(part: int, kept: list[Frame], skips: list[Skip], halo: int) -> _Chunk:
     skips[:] = later
     near = [frame for frame in kept if low - halo <= frame.index < high + halo]
     return _Chunk(part, near, own)
+
+
+def _tell(background: Background) -> dict[str, Any]:
+    """Give what was learnt that a user wants to know."""
+    water = background.attenuation
+    return {
+        "remarks": list(background.remarks),
+        "attenuation": water
+        and {
+            "effective_per_m": water.effective,
+            "between_per_m": [water.low, water.high],
+        },
+    }
 
 
 def _count(project: Project) -> dict[str, Any]:

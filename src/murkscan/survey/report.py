@@ -6,6 +6,7 @@ from typing import Any
 
 from ..project import STAGES, Project
 from ..report import Recorded, ScanSummary, Shown, as_html, as_json, summarise
+from ..types.background import Attenuation
 from .progress import Progress, silent
 from .scan_rig import load_scan_rig
 
@@ -51,6 +52,8 @@ def _summarise(project: Project) -> ScanSummary:
             fields_per_picture=recording["fields_per_picture"],
             is_timed=recording["is_timed"],
             skips=[tuple(skip) for skip in extract.counts()["skips"]],
+            remarks=extract.counts().get("remarks", []),
+            attenuation=_attenuation(extract.counts()),
         ),
         load_scan_rig(project),
         project.load_profile_parts(),
@@ -65,6 +68,11 @@ def _summarise(project: Project) -> ScanSummary:
         durations={name: stage.seconds() for name, stage in stages.items()},
         pictures=_pictures(project),
     )
+
+
+def _attenuation(extracted: dict[str, Any]) -> Attenuation | None:
+    water = extracted.get("attenuation")
+    return water and Attenuation(water["effective_per_m"], *water["between_per_m"])
 
 
 def _pictures(project: Project) -> list[Shown]:
