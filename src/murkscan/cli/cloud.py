@@ -38,7 +38,7 @@ def cloud(
     from ..project import Project
     from ..survey.cloud import build_cloud
     from ..survey.export import check_export, export_cloud
-    from ..survey.merge import is_merged
+    from ..survey.merged import is_merged
     from ..survey.scan_rig import load_scan_rig
     from .summary import print_result
 

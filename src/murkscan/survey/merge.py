@@ -3,7 +3,6 @@
 import platform
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
@@ -12,13 +11,14 @@ from typing import Any
 import numpy as np
 
 from ..cloud import thin_clouds
-from ..errors import Degenerate, FormatError, InputError, MissingResult
+from ..errors import Degenerate, InputError, MissingResult
 from ..geometry.alignment import Alignment, align_clouds
 from ..io.cloud_files import check_cloud_suffix, iterate_cloud_file
 from ..project import Project
 from ..types.cloud import PointCloud
 from ..types.pose import Pose
 from .alignment_words import alignment_as_json, describe_alignment
+from .merged import is_merged
 from .progress import Progress, silent
 
 _SAMPLE = 2_000_000
@@ -113,13 +113,6 @@ def merge_passes(
     result = {"points": points, "outliers": 0, "passes": told}
     stage.finish(result, since=since)
     return result
-
-
-def is_merged(project: Project) -> bool:
-    """Tell whether a project's cloud was merged from others, so that no stage can make it anew."""
-    with suppress(MissingResult, FormatError):
-        return "merged" in project.load_scan()
-    return False
 
 
 def _record(paths: Sequence[Path]) -> dict[str, Any]:

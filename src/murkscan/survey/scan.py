@@ -17,6 +17,7 @@ from ..triangulate import AbstractTriangulation, RaySheet
 from ..types.rig import Rig
 from .cloud import build_cloud
 from .extract import check_recording, extract_recording
+from .merged import require_recording
 from .mesh import build_mesh
 from .motion import check_times, follow_motion
 from .progress import Progress, silent
@@ -104,6 +105,7 @@ def begin_scan(
     check_recording(recording, rig, laser)
     project = Project(Path(out))
     project.check_writable()
+    require_recording(project)
     project.save_scan(
         {
             "format": 1,

@@ -3,6 +3,7 @@
 from ..io.rig_toml import parse_rig
 from ..project import Project
 from ..types.rig import Rig
+from .merged import require_recording
 
 
 def load_scan_rig(project: Project) -> Rig:
@@ -10,5 +11,7 @@ def load_scan_rig(project: Project) -> Rig:
 
     Raises:
         MissingResult: The folder holds no scan.
+        InputError: It was merged from other scans.
     """
+    require_recording(project)
     return parse_rig(project.load_scan()["rig"], name=f"{project.root / 'scan.json'}: rig")
