@@ -11,6 +11,8 @@ curvature."""
 _MOST_STEPS = 8
 _FEWEST = 6
 """Pixels that are not white, below which nothing is fitted."""
+_GLARE = 8.0
+"""White pixels, in widths of the core, from which a stripe is lost in glare."""
 
 
 @njit(cache=True, nogil=True)
@@ -80,6 +82,8 @@ def fit_stripes(
         low, high = max(middle - half, 0), min(middle + half, len(levels) - 1)
         scan = levels[low : high + 1, lines[i]]
         skirt = skirts[i, low - middle + half : high - middle + half + 1]
+        if np.sum(scan >= noise[3]) > _GLARE * shape[0] + 1.0:
+            continue
         _begin(scan, middle - low, starts[i] - middle, shape, p)
         misfit, variance = 0.0, -1.0
         for turn in range(_MOST_STEPS):
