@@ -11,7 +11,7 @@ demo: $(VENV)/core
 	$(BIN)/murkscan demo
 
 test: check
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n auto --dist loadfile
 
 check: $(VENV)/dev
 	$(BIN)/ruff format --check .

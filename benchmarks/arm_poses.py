@@ -24,7 +24,7 @@ from murkscan.calibrate import (
 )
 from murkscan.calibrate.hand_eye import MountCalibration
 from murkscan.capture.folder import natural_key
-from murkscan.extract import AbstractExtractor, GrayGravity
+from murkscan.extract import AbstractExtractor, GrayGravity, Murk
 from murkscan.geometry import fit_plane
 from murkscan.io.poses import save_poses
 from murkscan.io.rig_toml import load_rig
@@ -46,8 +46,14 @@ PAPER = Margin(0.03, 0.03, 0.03, 0.03)
 EVERY, HALT = 10.0, 1.0
 """The arm's log has no times: a photo every ten seconds, standing still a second before and after
 [s]."""
-EXTRACTORS = {"12 px, as by default": GrayGravity(), "40 px": GrayGravity(half_width=40.0)}
-"""Half the window: the line is up to 50 px wide in these photos."""
+EXTRACTORS = {
+    "gray gravity, window of 12 px, as by default": GrayGravity(),
+    "gray gravity, window of 40 px": GrayGravity(half_width=40.0),
+    "murk": Murk(),
+}
+"""The line is up to 50 px wide in these photos."""
+CALIBRATES = "gray gravity, window of 40 px"
+"""What the laser is calibrated with, and what the bar is for."""
 
 
 def main() -> None:
@@ -63,7 +69,7 @@ def main() -> None:
         photos, rig_path = scratch / "photos", scratch / "rig.toml"
         calibrate_camera_from_photos(photos, BOARD, rig_path, wavelength=640e-9)
         calibrate_laser_from_photos(
-            photos, BOARD, rig_path, margin=PAPER, extractor=EXTRACTORS["40 px"]
+            photos, BOARD, rig_path, margin=PAPER, extractor=EXTRACTORS[CALIBRATES]
         )
         result = calibrate_mount_from_photos(photos, BOARD, rig_path, log)
         figures = [*tell_mount(result.calibration, result.num_photos - len(result.without_board))]
@@ -133,12 +139,11 @@ def tell_planes(
             in_robot.append(vehicle @ found.vehicle_from_camera @ points)
             along.append(pixels[:, 0])
         residuals = fit_plane(np.concatenate(in_robot), tolerance=np.inf).residuals
-        about = f"window of {words}"
-        yield Figure(f"{about}: photos with a stripe", sum(len(p) > 0 for p in in_robot))
-        yield Figure(f"{about}: stripe points", len(residuals))
-        bar = 0.3 if extractor.half_width == 40 else None
+        yield Figure(f"{words}: photos with a stripe", sum(len(p) > 0 for p in in_robot))
+        yield Figure(f"{words}: stripe points", len(residuals))
+        bar = 0.3 if words == CALIBRATES else None
         yield Figure(
-            f"{about}: RMS of all points from one plane in the robot's frame",
+            f"{words}: RMS of all points from one plane in the robot's frame",
             rms(residuals),
             "mm",
             at_most=bar,
@@ -149,7 +154,7 @@ def tell_planes(
             for u, part in zip(along, np.split(residuals, ends), strict=True)
             if len(part)
         ]
-        name = f"{about}: the same about a straight line in each photo, whatever its pose"
+        name = f"{words}: the same about a straight line in each photo, whatever its pose"
         yield Figure(name, rms(np.concatenate(bent)), "mm")
 
 

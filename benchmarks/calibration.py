@@ -14,6 +14,7 @@ from harness import DATA, Figure, skip, tell
 
 from murkscan.calibrate import CameraCalibration, Chessboard, Margin, calibrate_camera
 from murkscan.errors import Degenerate
+from murkscan.extract import GrayGravity, Murk
 from murkscan.survey.calibrate import calibrate_camera_from_photos
 from murkscan.survey.calibrate_laser import calibrate_laser_from_photos
 
@@ -87,15 +88,17 @@ def refusal_of_parallel_boards(data: Path, scratch: Path) -> str:
 
 
 def measure_laser(data: Path, scratch: Path) -> Iterator[Figure]:
-    for words, margin, bars in [
-        ("paper given", PAPER, (0.45, 0.5, 2.0)),
-        ("default margin", None, (None, None, None)),
+    for words, margin, extractor, bars in [
+        ("paper given", PAPER, GrayGravity(), (0.45, 0.5, 2.0)),
+        ("paper given, murk", PAPER, Murk(), (None, None, None)),
+        ("default margin", None, GrayGravity(), (None, None, None)),
     ]:
         result = calibrate_laser_from_photos(
             data / "green_laser/laser_on_board",
             Chessboard(8, 6, 0.04),
             scratch / "green_laser.toml",
             margin=margin,
+            extractor=extractor,
         )
         found = result.calibration.fit
         points = np.concatenate(found.points)[np.concatenate(found.inliers)]

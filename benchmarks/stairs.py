@@ -13,6 +13,7 @@ from murkscan import (
     GaussianFit,
     GrayGravity,
     Laser,
+    Murk,
     PointCloud,
     Rig,
     Steger,
@@ -39,7 +40,7 @@ RIG = Rig(
     (Laser.from_baseline_angle(0.0373, math.radians(65.0), "x"),),
     wavelength=650e-9,
 )
-EXTRACTORS = (GrayGravity(), ThresholdSkeleton(), GaussianFit(), Steger())
+EXTRACTORS = (Murk(), GrayGravity(), ThresholdSkeleton(), GaussianFit(), Steger())
 
 
 def scan_cloud(extractor: AbstractExtractor, out: Path) -> PointCloud:
@@ -78,7 +79,7 @@ def main() -> None:
             heights, spreads = measure_steps(scan_cloud(extractor, Path(folder) / "scan"))
         scale = heights @ TRUTH_MM / (heights @ heights)
         off, scaled = np.abs(heights - TRUTH_MM), np.abs(scale * heights - TRUTH_MM)
-        name, is_default = type(extractor).__name__, isinstance(extractor, GrayGravity)
+        name, is_default = type(extractor).__name__, isinstance(extractor, Murk)
         bars = (0.10, 0.03, 0.12) if is_default else (None, None, None)
         for truth, height in zip(TRUTH_MM, heights, strict=True):
             figures.append(Figure(f"{name}: step of {truth} mm", height, "mm"))
