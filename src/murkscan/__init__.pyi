@@ -1,4 +1,5 @@
 from .capture import open_recording as open_recording
+from .cloud import thin_cloud as thin_cloud
 from .errors import Degenerate as Degenerate
 from .errors import DeviceError as DeviceError
 from .errors import EstimationError as EstimationError
@@ -14,6 +15,8 @@ from .extract import GrayGravity as GrayGravity
 from .extract import Murk as Murk
 from .extract import Steger as Steger
 from .extract import ThresholdSkeleton as ThresholdSkeleton
+from .geometry.alignment import align_clouds as align_clouds
+from .io.cloud_files import load_cloud_file as load_cloud_file
 from .io.poses import load_poses as load_poses
 from .io.rig_toml import load_rig as load_rig
 from .io.rig_toml import save_rig as save_rig
