@@ -11,7 +11,8 @@ NAMES = {
     "InputError", "Laser", "Mesh", "MissingDependency", "MissingResult", "MurkscanError",
     "NotConverged", "NotEnoughData", "Plane", "PointCloud", "Poisson", "Pose", "PoseLog", "Profile",
     "Murk", "Project", "RaySheet", "Rig", "Steger", "Stripe", "ThresholdSkeleton", "Trajectory",
-    "align_clouds", "load_cloud_file", "thin_cloud", "load_poses", "load_rig", "open_recording", "save_rig", "scan",
+    "align_clouds", "load_cloud_file", "load_poses", "load_rig", "open_recording", "save_rig",
+    "scan", "thin_cloud",
 }  # fmt: skip
 
 
