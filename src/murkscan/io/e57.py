@@ -139,7 +139,9 @@ def _read_scan(lib: Any, file: Any, number: int, path: Path, block: int) -> Iter
     if not all(name in there for name in place):
         raise FormatError(f"{path} has no coordinates in its scan {number}.")
     world_from_scan = _pose(header)
-    wanted = {name: _ours(name) for name in there if _ours(name)} | {name: name for name in place}
+    known = {name: _ours(name) for name in there}
+    wanted = {name: ours for name, ours in known.items() if ours is not None}
+    wanted |= {name: name for name in place}
     wanted |= {name: name for name in _INVALID if name in there}
     arrays = {name: np.zeros(block, _buffer_type(ours)) for name, ours in wanted.items()}
     reader = header.points.reader(_named_buffers(lib, file.image_file, arrays))
