@@ -7,13 +7,16 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import App, Parameter
 
 from ..errors import InputError
-from .measure_part import PartFlags, print_measurement, read_place
+from .measure_part import PartFlags, print_measurement, read_place, read_plane
 
 if TYPE_CHECKING:
     from ..measure import Sample
     from ..types.measurement import Measurement
 
-What = Literal["distance", "section", "plane", "sphere", "cylinder"]
+What = Literal[
+    "distance", "section", "area", "volume", "plane", "sphere", "cylinder", "step", "deviation",
+    "dents",
+]  # fmt: skip
 
 app = App(
     name="measure",
@@ -21,6 +24,14 @@ app = App(
     "what each wants to know.",
     usage="Usage: murkscan measure OUT WHAT [OPTIONS]\n",
 )
+for _file, _name, _help in (
+    ("extent", "step", "Measure the step between two parallel planes."),
+    ("extent", "area", "Measure the area of the surface, as far as it was scanned."),
+    ("extent", "volume", "Measure the volume between the surface and a plane, or inside it."),
+    ("deviation", "deviation", "Compare the scan with a drawing's mesh or an earlier scan."),
+    ("deviation", "dents", "Find dents and bumps, with place, depth and diameter."),
+):
+    app.command(f"murkscan.cli.measure_{_file}:{_name}", name=_name, help=_help)
 
 
 @app.default
@@ -146,20 +157,13 @@ def section(
     name
         What to call it: OUT/measure/NAME.json, .svg …
     """
-    import numpy as np
-
     from ..project import Project
     from ..survey.measure import measure_cut
-    from ..types.plane import Plane
 
-    direction = np.array(read_place("--normal", normal))
-    if not direction.any():
-        raise InputError("--normal 0,0,0 is no direction; give one such as 0,1,0.")
-    cut = Plane.through(np.array(read_place("--point-m", point_m)), direction)
     chosen = formats.split(",")
     if unknown := set(chosen) - {"dxf", "svg", "csv"}:
         raise InputError(f"--formats takes dxf, svg and csv, got {', '.join(sorted(unknown))}.")
-    found = measure_cut(Project(out), cut, name=name, formats=chosen)
+    found = measure_cut(Project(out), read_plane(point_m, normal), name=name, formats=chosen)
     print_measurement(out, name, found, suffixes=tuple(chosen))
 
 

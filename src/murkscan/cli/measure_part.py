@@ -15,6 +15,7 @@ from .words import print_table, say
 if TYPE_CHECKING:
     from ..measure import Selection
     from ..types.measurement import Measurement
+    from ..types.plane import Plane
     from ..types.quantity import Quantity
 
 _SHOWN = {"m": ("mm", 1e3), "m2": ("cm²", 1e4), "m3": ("cm³", 1e6), "rad": ("°", 180 / math.pi)}
@@ -61,6 +62,18 @@ def read_place(flag: str, text: str) -> tuple[float, float, float]:
             f"{flag} {text!r} is not X,Y,Z; give three numbers such as 0.12,0.5,0.803."
         )
     return _three(numbers)
+
+
+def read_plane(point_m: str, normal: str) -> "Plane":
+    """Read a plane from --point-m and --normal."""
+    import numpy as np
+
+    from ..types.plane import Plane
+
+    direction = np.array(read_place("--normal", normal))
+    if not direction.any():
+        raise InputError("--normal 0,0,0 is no direction; give one such as 0,1,0.")
+    return Plane.through(np.array(read_place("--point-m", point_m)), direction)
 
 
 def print_measurement(

@@ -109,6 +109,28 @@ def covariance_of_fit(
     return FitCovariance(matrix, degrees, reach)
 
 
+def covariance_of_sums(
+    weights: Slopes, errors: Scalars, profile: Indices, line: Indices
+) -> Float[np.ndarray, "p p"]:
+    """Give the covariance of weighted sums of errors, from the errors themselves.
+
+    Args:
+        weights: Weight of each error in each sum.
+        errors: How far each point is off, such as its distance from a smooth surface [m].
+        profile: Number of each point's profile.
+        line: Number of each point's scan line.
+
+    References:
+        As for `covariance_of_fit`.
+    """
+    cells = _Cells.of(profile, line)
+    moments = weights * errors[:, None]
+    scale = np.maximum(np.linalg.norm(moments, axis=0), 1e-300)
+    moments = moments / scale
+    pairs = _sum_pairs(cells, moments, _find_reach(cells, errors))
+    return _at_least(pairs, _FLOOR * moments.T @ moments) * np.outer(scale, scale)
+
+
 def _find_reach(cells: _Cells, residuals: Scalars) -> tuple[int, int]:
     values, there = cells.fill(residuals), cells.fill(np.ones_like(residuals))
     values = np.divide(values, there, out=np.zeros_like(values), where=there > 0)
@@ -152,7 +174,9 @@ def _at_least(
     matrix: Float[np.ndarray, "p p"], least: Float[np.ndarray, "p p"]
 ) -> Float[np.ndarray, "p p"]:
     """Raise a covariance, in each direction, to what another one has there."""
-    root = np.linalg.cholesky(least + 1e-300 * np.eye(len(least)))
+    # A direction without any errors has no root: it gets one that changes nothing elsewhere.
+    slack = 1e-12 * float(np.diag(least).max()) + 1e-300
+    root = np.linalg.cholesky(least + slack * np.eye(len(least)))
     inverse = np.linalg.inv(root)
     sizes, axes = np.linalg.eigh(inverse @ (matrix + matrix.T) @ inverse.T / 2)
     return root @ (axes * np.maximum(sizes, 1.0)) @ axes.T @ root.T

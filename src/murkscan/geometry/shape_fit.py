@@ -43,6 +43,9 @@ class ShapeFit(Generic[SomeShape]):
     variance of the stripe's blur [m²]."""
     middle: Vector
     """Mean of all points [m]."""
+    blur: float = 0.0
+    """Variance of the stripe's blur along the stripe, as fitted [m²]; 0 where it is none of the
+    fit's parameters."""
 
     @property
     def rms(self) -> float:
@@ -52,7 +55,7 @@ class ShapeFit(Generic[SomeShape]):
     def shifted(self, offset: Vector) -> "ShapeFit[SomeShape]":
         """Move shape and points as a whole [m]."""
         moved, middle = self.shape.shifted(offset), self.middle + offset
-        return ShapeFit(moved, self.residuals, self.inliers, self.slopes, middle)
+        return ShapeFit(moved, self.residuals, self.inliers, self.slopes, middle, self.blur)
 
 
 def require_points(points: Points, least: int, what: str) -> None:
@@ -115,7 +118,7 @@ def refine_shape(
             "of one surface only."
         )
     residuals, slopes, _ = _linearise(shape, points, sight, blur)
-    return ShapeFit(shape, residuals, inliers, slopes, points.mean(axis=0))
+    return ShapeFit(shape, residuals, inliers, slopes, points.mean(axis=0), blur)
 
 
 def _linearise(

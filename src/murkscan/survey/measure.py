@@ -5,7 +5,18 @@ from collections.abc import Callable, Collection
 from ..io.section_csv import save_section_csv
 from ..io.section_dxf import require_ezdxf, save_section_dxf
 from ..io.section_svg import save_section_svg
-from ..measure import Sample, Selection, cut_section, measure_section
+from ..measure import (
+    Sample,
+    Selection,
+    cut_out,
+    cut_section,
+    measure_area,
+    measure_enclosed,
+    measure_section,
+    measure_step,
+    measure_volume,
+    trust_plane,
+)
 from ..project import Project
 from ..types.measurement import Measurement
 from ..types.plane import Plane
@@ -72,5 +83,84 @@ def measure_cut(
         save_section_svg(files["svg"], drawing, title=f"Section {name}")
     if "dxf" in files:
         save_section_dxf(files["dxf"], drawing)
+    save_measurement(project, name, measured)
+    return measured
+
+
+def measure_stairs(
+    project: Project, first: Selection, second: Selection, *, name: str = "step"
+) -> Measurement:
+    """Measure the step between two parts of a scan that are parallel planes.
+
+    Raises:
+        MissingResult: The cloud stage has not been finished.
+        EstimationError: A part is too small, or is no plane.
+        InputError: The name is none for a file.
+    """
+    measure_file(project, name)
+    measured = measure_step(load_sample(project, first), load_sample(project, second))
+    save_measurement(project, name, measured)
+    return measured
+
+
+def measure_covered(
+    project: Project, *, name: str = "area", selection: Selection | None = None
+) -> Measurement:
+    """Measure the area of a scan's surface.
+
+    Raises:
+        MissingResult: The mesh stage has not been finished.
+        NotEnoughData: The selection holds no triangle.
+        InputError: The name is none for a file.
+    """
+    measure_file(project, name)
+    mesh = cut_out(project.load_mesh(), selection)
+    measured = measure_area(mesh, load_sample(project))
+    save_measurement(project, name, measured)
+    return measured
+
+
+def measure_above(
+    project: Project,
+    base: Plane | Selection,
+    *,
+    name: str = "volume",
+    selection: Selection | None = None,
+) -> Measurement:
+    """Measure the volume between a scan's surface and a plane.
+
+    Args:
+        project: A scan with finished cloud and mesh stages.
+        base: The plane, in the world; or the part of the scan that it is fitted to, which then
+            counts positive what stands out towards the camera.
+        name: What to call it.
+        selection: Which part of the surface; all of it unless given.
+
+    Raises:
+        MissingResult: The mesh stage has not been finished.
+        EstimationError: A part is too small, or the base is no plane.
+        InputError: The name is none for a file.
+    """
+    measure_file(project, name)
+    sample = load_sample(project)
+    mesh = cut_out(project.load_mesh(), selection)
+    if isinstance(base, Plane):
+        measured = measure_volume(mesh, sample, base)
+    else:
+        fit, trust = trust_plane(load_sample(project, base))
+        measured = measure_volume(mesh, sample, fit.shape, trust=(trust, fit.middle[None]))
+    save_measurement(project, name, measured)
+    return measured
+
+
+def measure_inside(project: Project, *, name: str = "volume") -> Measurement:
+    """Measure the volume that a scan's surface encloses.
+
+    Raises:
+        MissingResult: The mesh stage has not been finished.
+        InputError: The surface is not closed, or the name is none for a file.
+    """
+    measure_file(project, name)
+    measured = measure_enclosed(project.load_mesh(), load_sample(project))
     save_measurement(project, name, measured)
     return measured

@@ -1,0 +1,152 @@
+"""murkscan measure deviation and dents: compare a scan with what it should be."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from cyclopts import Parameter
+
+from .measure_part import PartFlags, print_measurement
+from .words import print_table, say
+
+if TYPE_CHECKING:
+    from ..measure import DentSearch
+    from ..project import Project
+    from ..survey.reference import Reference
+    from ..types.dent import Dent
+
+Unit = Literal["m", "cm", "mm", "in"]
+Flag = Annotated[bool, Parameter(negative=())]
+
+
+def deviation(
+    out: Path,
+    *,
+    reference: Path,
+    unit: Unit = "m",
+    as_given: Flag = False,
+    reach_mm: float = 50.0,
+    part: PartFlags = PartFlags(),
+    name: str = "deviation",
+) -> None:
+    """Compare the scan with a drawing's mesh or an earlier scan.
+
+    Writes a coloured map (.ply and two pictures), a histogram and a signed table beside the
+    numbers. Positive is towards the camera, negative a dent.
+
+    Parameters
+    ----------
+    out
+        Folder of the scan, with finished cloud and mesh stages.
+    reference
+        A .ply, .stl or .glb file, or the folder of an earlier scan.
+    unit
+        Unit of the file.
+    as_given
+        Take the reference where it is, in the scan's world; otherwise it is laid on the scan by
+        ICP.
+    reach_mm
+        Distance beyond which a point of the scan is none of the reference's [mm].
+    name
+        What to call it: OUT/measure/NAME.json, .ply, .csv, .png.
+    """
+    from ..project import Project
+    from ..survey.deviation import compare_scan
+
+    project = Project(out)
+    found = compare_scan(
+        project,
+        _load(project, reference, unit, as_given),
+        within=reach_mm / 1e3,
+        name=name,
+        selection=part.select(),
+    )
+    print_measurement(out, name, found, suffixes=("ply", "csv"))
+    for kind in ("front", "isometric", "histogram"):
+        say(str(out / "measure" / f"{name}-{kind}.png"))
+
+
+def dents(
+    out: Path,
+    *,
+    reference: Path | None = None,
+    unit: Unit = "m",
+    as_given: Flag = False,
+    smallest_mm: float = 20.0,
+    largest_mm: float = 150.0,
+    least_depth_mm: float = 0.0,
+    part: PartFlags = PartFlags(),
+    name: str = "dents",
+) -> None:
+    """Find dents and bumps: where the scan departs from a reference by more than chance.
+
+    Without a reference the scan is compared with a smooth surface through itself.
+
+    Parameters
+    ----------
+    out
+        Folder of the scan, with finished cloud and mesh stages.
+    reference
+        A .ply, .stl or .glb file, or the folder of an earlier scan.
+    unit
+        Unit of the file.
+    as_given
+        Take the reference where it is, in the scan's world; otherwise it is laid on the scan by
+        ICP.
+    smallest_mm
+        Width of the smallest dent looked for [mm].
+    largest_mm
+        Width of the largest one [mm]: wider shapes are taken for the hull's own.
+    least_depth_mm
+        Depth below which none is told [mm].
+    name
+        What to call it: OUT/measure/NAME.json, .ply, .csv, .png.
+    """
+    from ..project import Project
+    from ..survey.deviation import search_dents
+
+    project = Project(out)
+    search = search_dents(
+        project,
+        None if reference is None else _load(project, reference, unit, as_given),
+        smallest=smallest_mm / 1e3,
+        largest=largest_mm / 1e3,
+        least_depth=least_depth_mm / 1e3,
+        name=name,
+        selection=part.select(),
+    )
+    _print_dents(search)
+    for kind in (".json", ".ply", ".csv", "-front.png", "-isometric.png"):
+        say(str(out / "measure" / f"{name}{kind}"))
+
+
+def _load(project: "Project", path: Path, unit: Unit, as_given: bool) -> "Reference":
+    from ..survey.reference import lay_on, load_reference
+
+    reference = load_reference(path, unit=unit)
+    return reference if as_given else lay_on(reference, project.load_cloud())
+
+
+def _print_dents(search: "DentSearch") -> None:
+    if search.dents:
+        columns = ("", "x [mm]", "y [mm]", "z [mm]", "depth [mm]", "diameter [mm]", "volume [cm³]")
+        print_table("Dents (± 95 %)", columns, [_row(dent) for dent in search.dents])
+    else:
+        say("No dent was found.")
+    say(
+        f"Averaged over the smallest dent, the scan scatters by {1e3 * search.noise:.3f} mm; what "
+        f"departs by more than {1e3 * search.threshold:.3f} mm is told."
+    )
+
+
+def _row(dent: "Dent") -> tuple[str, ...]:
+    place = [
+        f"{1e3 * at:.1f} ± {1.96e3 * sigma:.1f}"
+        for at, sigma in zip(dent.place.tolist(), dent.sigma_place.tolist(), strict=True)
+    ]
+    return (
+        "dent" if dent.depth.value > 0 else "bump",
+        *place,
+        f"{1e3 * dent.depth.value:.2f} ± {1e3 * dent.depth.half_width:.2f}",
+        f"{1e3 * dent.diameter.value:.0f} ± {1e3 * dent.diameter.half_width:.0f}",
+        f"{1e6 * dent.volume.value:.2f} ± {1e6 * dent.volume.half_width:.2f}",
+    )

@@ -1,0 +1,118 @@
+"""murkscan measure step, area and volume."""
+
+from pathlib import Path
+
+from ..errors import InputError
+from .measure_part import PartFlags, print_measurement, read_place, read_plane
+
+
+def step(
+    out: Path,
+    *,
+    first_m: str,
+    second_m: str,
+    within_mm: float,
+    name: str = "step",
+) -> None:
+    """Measure the step between two parallel planes; positive where the second is nearer.
+
+    Parameters
+    ----------
+    out
+        Folder of the scan, with a finished cloud stage.
+    first_m
+        A place in the middle of the first plane, as X,Y,Z [m].
+    second_m
+        A place in the middle of the second.
+    within_mm
+        How far from these places points are taken [mm]; keep clear of edges.
+    name
+        What to call it: OUT/measure/NAME.json.
+    """
+    from ..measure import Ball
+    from ..project import Project
+    from ..survey.measure import measure_stairs
+
+    first, second = (
+        Ball(read_place(flag, text), within_mm / 1e3)
+        for flag, text in (("--first-m", first_m), ("--second-m", second_m))
+    )
+    print_measurement(out, name, measure_stairs(Project(out), first, second, name=name))
+
+
+def area(out: Path, *, part: PartFlags = PartFlags(), name: str = "area") -> None:
+    """Measure the area of the surface, as far as it was scanned.
+
+    Parameters
+    ----------
+    out
+        Folder of the scan, with finished cloud and mesh stages.
+    name
+        What to call it: OUT/measure/NAME.json.
+    """
+    from ..project import Project
+    from ..survey.measure import measure_covered
+
+    found = measure_covered(Project(out), name=name, selection=part.select())
+    print_measurement(out, name, found)
+
+
+def volume(
+    out: Path,
+    *,
+    point_m: str | None = None,
+    normal: str | None = None,
+    base_near_m: str | None = None,
+    base_within_mm: float | None = None,
+    part: PartFlags = PartFlags(),
+    name: str = "volume",
+) -> None:
+    """Measure the volume between the surface and a plane, or inside a closed surface.
+
+    With --point-m and --normal the plane is given; with --base-near-m and --base-within-mm it is
+    fitted to that part of the scan. Without either the surface must be closed.
+
+    Parameters
+    ----------
+    out
+        Folder of the scan, with finished cloud and mesh stages.
+    point_m
+        A point of the plane, as X,Y,Z [m].
+    normal
+        Its normal, as X,Y,Z of any length, towards the side that counts positive.
+    base_near_m
+        Middle of the flat part that the plane is fitted to, as X,Y,Z [m].
+    base_within_mm
+        How far that part reaches from there [mm].
+    name
+        What to call it: OUT/measure/NAME.json.
+    """
+    from ..measure import Ball
+    from ..project import Project
+    from ..survey.measure import measure_above, measure_inside
+
+    is_given, is_fitted = _are_both(point_m, normal), _are_both(base_near_m, base_within_mm)
+    if is_given and is_fitted:
+        raise InputError("Give the plane, or the part that it is fitted to, not both.")
+    project, chosen = Project(out), part.select()
+    if point_m is not None and normal is not None:
+        found = measure_above(project, read_plane(point_m, normal), name=name, selection=chosen)
+    elif base_near_m is not None and base_within_mm is not None:
+        base = Ball(read_place("--base-near-m", base_near_m), base_within_mm / 1e3)
+        found = measure_above(project, base, name=name, selection=chosen)
+    elif chosen is not None:
+        raise InputError(
+            "A part of a surface encloses no volume; give a plane with --point-m and --normal, or "
+            "--base-near-m and --base-within-mm."
+        )
+    else:
+        found = measure_inside(project, name=name)
+    print_measurement(out, name, found)
+
+
+def _are_both(one: object, other: object) -> bool:
+    if (one is None) != (other is None):
+        raise InputError(
+            "Give --point-m and --normal together, or --base-near-m and --base-within-mm together."
+        )
+    return one is not None

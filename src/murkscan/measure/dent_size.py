@@ -1,0 +1,186 @@
+"""How deep, how wide and where a dent is, each with its uncertainty."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool
+from scipy.ndimage import binary_dilation
+
+from ..geometry.correlated_errors import covariance_of_fit, covariance_of_sums
+from ..geometry.height_map import Map, MapFrame
+from ..types.arrays import Points, Scalars
+from ..types.dent import Dent
+from ..types.deviation import Deviation
+from ..types.quantity import Quantity
+from .sample import Sample
+
+_FLOOR = 0.4
+"""Radius around the deepest place, in the dent's radius, over which its floor is a paraboloid."""
+_RIM = 3
+"""Cells around a dent that are its rim."""
+_MOST_AT_RIM = 200
+"""Points of the rim for which the rig's errors are traced."""
+
+
+@dataclass(frozen=True, eq=False)
+class DentRegion:
+    """The cells of a map that a dent covers."""
+
+    frame: MapFrame
+    """The map."""
+    cells: Bool[np.ndarray, "h w"]
+    """Which of its cells."""
+    deepest: tuple[int, int]
+    """Row and column of the deepest one."""
+    level: float
+    """Depth down to which the dent reaches [m]."""
+    noise: float
+    """Standard deviation of the map [m]."""
+    sign: float
+    """-1 for a dent, 1 for a bump."""
+
+    @property
+    def radius(self) -> float:
+        """Radius of the circle of its area [m]."""
+        return self.frame.cell * math.sqrt(self.cells.sum() / math.pi)
+
+
+def measure_dent(
+    region: DentRegion, sample: Sample, deviation: Deviation, located: Points, values: Map
+) -> Dent:
+    """Measure one dent.
+
+    Its depth is that of a paraboloid fitted to the points around its deepest place; its middle is
+    the centre of gravity of what is missing; its rim lies where the averaged map is at a tenth of
+    its depth.
+
+    Args:
+        region: The cells that it covers.
+        sample: The points of the scan that belong to the surface.
+        deviation: Their distances from the reference.
+        located: Their places on the map [m].
+        values: The averaged map [m].
+    """
+    inside = region.cells[region.frame.cells_of(located)]
+    here, off = sample[inside], deviation[inside]
+    reference = float(np.median(off.sigma_reference))
+    middle, spread, volume, sigma_volume = _balance(region, here, off, located[inside], values)
+    common, moved = _common_part(region, sample, located)
+    area = float(region.cells.sum()) * region.frame.cell**2
+    depth = _measure_depth(region, sample, deviation, located, reference, common)
+    height = _height_at(located[inside], middle)
+    axes = region.frame.map_from_world
+    along = np.array([spread[0], spread[1], depth.sigma_independent])
+    independent = np.sqrt((axes.T**2) @ along**2)
+    return Dent(
+        place=region.frame.place(np.array([[*middle, height]]))[0],
+        sigma_place=np.hypot(independent, moved),
+        depth=depth,
+        diameter=_measure_diameter(region, values, reference),
+        volume=Quantity(
+            "volume",
+            volume,
+            "m3",
+            math.hypot(sigma_volume, reference * area),
+            None if common is None else common * area,
+        ),
+        num_points=int(inside.sum()),
+    )
+
+
+def _measure_depth(
+    region: DentRegion,
+    sample: Sample,
+    deviation: Deviation,
+    located: Points,
+    reference: float,
+    common: float | None,
+) -> Quantity:
+    """Fit a paraboloid to the floor of a dent."""
+    row, column = region.deepest
+    start = (np.array([column, row]) + 0.5) * region.frame.cell
+    reach = max(_FLOOR * region.radius, 2 * region.frame.cell)
+    near = np.linalg.norm(located[:, :2] - start, axis=1) < reach
+    x, y = ((located[near, :2] - start) / reach).T
+    design = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=1)
+    shape, *_ = np.linalg.lstsq(design, deviation.values[near], rcond=None)
+    u, v = _turning_point(shape)
+    there = np.array([1, u, v, u * u, u * v, v * v])
+    errors = deviation.values[near] - design @ shape
+    trust = covariance_of_fit(design, errors, sample.profile[near], sample.line[near])
+    own = float(there @ trust.matrix @ there)
+    depth = -float(there @ shape)
+    return Quantity("depth", depth, "m", math.sqrt(own + reference**2), common, trust.degrees)
+
+
+def _turning_point(shape: np.ndarray) -> tuple[float, float]:
+    """Give where a paraboloid is deepest; its middle where that lies outside."""
+    _, x, y, xx, xy, yy = shape.tolist()
+    turn = np.array([[2 * xx, xy], [xy, 2 * yy]])
+    if abs(np.linalg.det(turn)) < 1e-12 * float(np.abs(turn).max()) ** 2 or not turn.any():
+        return 0.0, 0.0
+    u, v = np.linalg.solve(turn, [-x, -y]).tolist()
+    return (u, v) if math.hypot(u, v) < 1 else (0.0, 0.0)
+
+
+def _balance(
+    region: DentRegion, here: Sample, off: Deviation, located: Points, values: Map
+) -> tuple[np.ndarray, np.ndarray, float, float]:
+    """Give the middle of what is missing, its deviation along the map, and the volume with its."""
+    rows, columns = np.nonzero(region.cells)
+    depth = -values[rows, columns]
+    places = (np.stack([columns, rows], axis=1) + 0.5) * region.frame.cell
+    middle = (depth @ places) / depth.sum()
+    area = len(depth) * region.frame.cell**2
+    facing = max(float(np.median(off.normals @ region.frame.map_from_world[2])), 0.1)
+    volume = float(depth.mean()) * area / facing
+    # Every point stands for the same share of the area.
+    share = 1.0 / len(off)
+    weights = np.concatenate(
+        [
+            (located[:, :2] - middle) * share / depth.mean(),
+            np.full((len(off), 1), share * area / facing),
+        ],
+        axis=1,
+    )
+    errors = off.values - values[region.frame.cells_of(located)]
+    spread = np.sqrt(np.diag(covariance_of_sums(weights, errors, here.profile, here.line)))
+    return middle, spread[:2], volume, float(spread[2])
+
+
+def _measure_diameter(region: DentRegion, values: Map, reference: float) -> Quantity:
+    """Give the diameter of a circle of the dent's area; its rim moves with the map's noise."""
+    slopes = np.hypot(*np.gradient(np.nan_to_num(values), region.frame.cell))
+    rim = region.cells & binary_dilation(~region.cells)
+    slope = max(float(slopes[rim].mean()), 1e-9)
+    shift = math.hypot(region.noise, reference) / slope
+    # Half a cell is what counting cells leaves open.
+    sigma = math.hypot(2 * shift, region.frame.cell / math.sqrt(3))
+    return Quantity("diameter", 2 * region.radius, "m", sigma, 0.0)
+
+
+def _common_part(
+    region: DentRegion, sample: Sample, located: Points
+) -> tuple[float | None, Scalars]:
+    """Give how the rig's errors deepen the dent, and how they move it, as deviations [m]."""
+    if sample.shifts is None:
+        return None, np.zeros(3)
+    row, column = region.deepest
+    start = (np.array([column, row]) + 0.5) * region.frame.cell
+    deepest = np.array([int(np.argmin(np.linalg.norm(located[:, :2] - start, axis=1)))])
+    ring = binary_dilation(region.cells, iterations=_RIM) & ~region.cells
+    at_rim = np.flatnonzero(ring[region.frame.cells_of(located)])
+    moved = sample.shifts(deepest)[0]
+    common = np.linalg.norm(moved, axis=1)
+    if len(at_rim) == 0:
+        return float(np.linalg.norm(region.frame.map_from_world[2] @ moved)), common
+    at_rim = at_rim[:: max(len(at_rim) // _MOST_AT_RIM, 1)]
+    change = moved - np.nanmean(sample.shifts(at_rim), axis=0)
+    return float(np.linalg.norm(region.frame.map_from_world[2] @ change)), common
+
+
+def _height_at(located: Points, middle: np.ndarray) -> float:
+    """Give the usual height of the points nearest to a place of the map [m]."""
+    away = np.linalg.norm(located[:, :2] - middle, axis=1)
+    return float(np.median(located[np.argsort(away)[:9], 2]))

@@ -1,0 +1,167 @@
+"""Area of a surface, and the volume between it and a plane."""
+
+import math
+
+import numpy as np
+
+from ..errors import NotEnoughData
+from ..geometry.correlated_errors import covariance_of_sums
+from ..geometry.height_map import MapFrame, smooth_map
+from ..types.arrays import Points, Scalars
+from ..types.measurement import Measurement
+from ..types.mesh import Mesh
+from ..types.plane import Plane
+from ..types.quantity import Quantity
+from .sample import Sample
+from .selection import Selection
+from .surface import area_vectors, nearest_points, rig_modes, rim_lengths, usual_noise
+from .trust import Trust
+
+_TILT = 0.05
+"""Standard deviation of a cloud's normals [rad], to which they are smoothed."""
+_EDGE = 4.0
+"""Robust standard deviations beyond which a height differs from its neighbours by shape."""
+_GAUSSIAN = 1.4826
+_SMOOTH_CELLS = 3.0
+"""Cells of the map over which heights are averaged, to tell noise from shape."""
+
+
+def cut_out(mesh: Mesh, selection: Selection | None) -> Mesh:
+    """Give the triangles whose three corners lie in a part of space.
+
+    Raises:
+        NotEnoughData: There are none.
+    """
+    if selection is None:
+        return mesh
+    inside = selection.contains(mesh.vertices)[mesh.faces].all(axis=1)
+    if not inside.any():
+        raise NotEnoughData(
+            f"None of the {len(mesh.faces)} triangles lies in the selection; choose another part."
+        )
+    used, faces = np.unique(mesh.faces[inside], return_inverse=True)
+    return Mesh(mesh.vertices[used], faces.reshape(-1, 3))
+
+
+def measure_area(mesh: Mesh, sample: Sample) -> Measurement:
+    """Give the area that a scan's triangles cover.
+
+    Triangles of noisy points are crooked and add up to too much: each counts as it is seen along
+    the smoothed normal of its corners. What is not covered by triangles is not counted.
+
+    Args:
+        mesh: The surface.
+        sample: The points it was made of.
+    """
+    vectors = area_vectors(mesh)
+    number = nearest_points(sample, mesh.vertices)
+    normals = sample.cloud.normals[number].astype(float)[mesh.faces].sum(axis=1)
+    length = np.linalg.norm(normals, axis=1)
+    flat = np.linalg.norm(vectors, axis=1)
+    seen = np.abs(np.einsum("ij,ij->i", vectors, normals)) / np.maximum(length, 1e-12)
+    area = float(np.where(length > 0, seen, flat).sum())
+    rim = rim_lengths(mesh)
+    noise = usual_noise(sample)
+    own = math.hypot(noise * float(np.sqrt((rim**2).sum())), _TILT**2 / 2 * area)
+    unit = vectors / np.maximum(flat, 1e-300)[:, None]
+    share = np.where(length > 0, seen, flat)
+    common = None
+    if (modes := rig_modes(sample)) is not None:
+        grow = np.trace(modes[:, :3], axis1=1, axis2=2)
+        across = np.einsum("fi,mij,fj,f->m", unit, modes[:, :3], unit, share)
+        common = float(np.linalg.norm(grow * area - across))
+    found = Quantity("area", area, "m2", own, common)
+    return Measurement("area", (found,), {"triangles": len(mesh.faces)})
+
+
+def measure_volume(
+    mesh: Mesh, sample: Sample, plane: Plane, *, trust: tuple[Trust, Points] | None = None
+) -> Measurement:
+    """Give the volume between a surface and a plane: what stands out less what lies behind.
+
+    Args:
+        mesh: The surface, open or closed.
+        sample: The points it was made of.
+        plane: The plane, its normal towards the side that counts positive.
+        trust: How far the plane is to be trusted, where it was fitted to the same scan, and the
+            mean of the points it was fitted to (1 3), about which its tilts are.
+
+    Raises:
+        NotEnoughData: The surface stands upright on the plane.
+    """
+    heights = plane.distance_to(mesh.vertices)
+    shadows = area_vectors(mesh) @ plane.normal
+    shadows = shadows if shadows.sum() >= 0 else -shadows
+    base = float(shadows.sum())
+    if base <= 0:
+        raise NotEnoughData("The surface stands upright on the plane; give another one.")
+    volume = float(shadows @ heights[mesh.faces].mean(axis=1))
+    weights = np.bincount(mesh.faces.ravel(), np.repeat(shadows / 3, 3), len(mesh.vertices))
+    number = nearest_points(sample, mesh.vertices)
+    errors = _height_errors(mesh.vertices, heights, plane)
+    used = weights != 0
+    own = covariance_of_sums(
+        weights[used, None], errors[used], sample.profile[number][used], sample.line[number][used]
+    )
+    variance = float(own[0, 0])
+    if trust is not None:
+        how = _plane_slopes(mesh, plane, shadows, base, trust[1])
+        variance += float(how @ trust[0].independent @ how)
+    common = _common_volume(mesh, sample, plane, shadows, base, trust)
+    found = (
+        Quantity("volume", volume, "m3", math.sqrt(variance), common),
+        Quantity("mean_height", volume / base, "m", math.sqrt(variance) / base,
+                 None if common is None else common / base),
+    )  # fmt: skip
+    return Measurement(
+        "volume", found, {"base_m2": base, "plane_normal": plane.normal.tolist(),
+                          "plane_distance_m": plane.distance},
+    )  # fmt: skip
+
+
+def _common_volume(
+    mesh: Mesh,
+    sample: Sample,
+    plane: Plane,
+    shadows: Scalars,
+    base: float,
+    trust: tuple[Trust, Points] | None,
+) -> float | None:
+    """Give how the rig's errors change the volume, by a surface that they move as a whole [m³]."""
+    if (modes := rig_modes(sample)) is None:
+        return None
+    volumes = []
+    for mode in modes:
+        moved = mesh.vertices + mesh.vertices @ mode[:3] + mode[3]
+        shifted = Mesh(moved, mesh.faces)
+        areas = area_vectors(shifted) @ plane.normal
+        areas = areas if areas.sum() >= 0 else -areas
+        heights = plane.distance_to(moved)[mesh.faces].mean(axis=1)
+        was = plane.distance_to(mesh.vertices)[mesh.faces].mean(axis=1)
+        volumes.append(float(areas @ heights - shadows @ was))
+    change = np.array(volumes)
+    if trust is not None and trust[0].common is not None:
+        change = change + _plane_slopes(mesh, plane, shadows, base, trust[1]) @ trust[0].common
+    return float(np.linalg.norm(change))
+
+
+def _plane_slopes(
+    mesh: Mesh, plane: Plane, shadows: Scalars, base: float, middle: Points
+) -> Scalars:
+    """Give the change of the volume with the plane's two tilts and its place."""
+    centres = mesh.vertices[mesh.faces].mean(axis=1) - middle
+    return shadows @ plane.slopes(centres)
+
+
+def _height_errors(vertices: Points, heights: Scalars, plane: Plane) -> Scalars:
+    """Give how far each corner lies from the smoothed surface, along the plane's normal [m]."""
+    normals = np.broadcast_to(plane.normal, vertices.shape)
+    area = float(np.prod(np.sort(np.ptp(vertices, axis=0))[1:]))
+    cell = 2 * math.sqrt(max(area, 1e-12) / len(vertices))
+    frame = MapFrame.over(vertices, normals, cell)
+    located = frame.locate(vertices)
+    mean, _ = smooth_map(*frame.gather(located, heights), sigma=_SMOOTH_CELLS)
+    errors = heights - mean[frame.cells_of(located)]
+    # At an edge the smoothed surface is what errs.
+    limit = _EDGE * _GAUSSIAN * float(np.median(np.abs(errors)))
+    return np.clip(errors, -limit, limit)

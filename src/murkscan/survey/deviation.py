@@ -1,0 +1,160 @@
+"""Compare a scan with a reference, and look for dents; keep what was found in OUT/measure."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..io.deviation_files import save_deviation_csv, save_deviation_ply
+from ..io.images import write_image
+from ..measure import (
+    DentSearch,
+    Sample,
+    Selection,
+    deviation_from_mesh,
+    deviation_from_smooth,
+    draw_histogram,
+    find_dents,
+    measure_departure,
+    sigma_of_points,
+)
+from ..project import Project
+from ..types.dent import Dent
+from ..types.deviation import Deviation
+from ..types.measurement import Measurement
+from ..types.mesh import Mesh
+from ..types.quantity import Quantity
+from ..view.render import render
+from ..view.values import SignedValues
+from ..view.views import standard_views
+from .measured import as_plain, measure_file, save_measurement
+from .reference import Reference
+from .sample import load_sample
+
+_PICTURES = ("front", "isometric")
+
+
+def compare_scan(
+    project: Project,
+    reference: Reference,
+    *,
+    within: float,
+    name: str = "deviation",
+    selection: Selection | None = None,
+) -> Measurement:
+    """Measure how far a scan lies from a reference: numbers, table, cloud, pictures, histogram.
+
+    Args:
+        project: A scan with finished cloud and mesh stages.
+        reference: The surface, in the scan's world.
+        within: Distance beyond which a point does not belong to it [m].
+        name: What to call it.
+        selection: Which part of the scan; all of it unless given.
+
+    Raises:
+        MissingResult: The cloud or the mesh stage has not been finished.
+        NotEnoughData: No point lies near the reference.
+        InputError: The name is none for a file.
+    """
+    measure_file(project, name)
+    sample = load_sample(project, selection)
+    surface = project.load_mesh()
+    deviation = deviation_from_mesh(
+        sample, reference.mesh, within=within, sigma=reference.sigma_along
+    )
+    measured = measure_departure(sample, deviation)
+    details = dict(measured.details) | _how_aligned(reference) | {"within_m": within}
+    details["points_per_row"] = _save_points(project, name, sample, deviation)
+    _draw(project, name, surface, sample, deviation)
+    histogram = draw_histogram(deviation.values, title=f"Scan against reference: {name}")
+    write_image(measure_file(project, f"{name}-histogram", "png"), histogram)
+    measured = replace(measured, details=details)
+    save_measurement(project, name, measured)
+    return measured
+
+
+def search_dents(
+    project: Project,
+    reference: Reference | None = None,
+    *,
+    smallest: float,
+    largest: float,
+    least_depth: float = 0.0,
+    name: str = "dents",
+    selection: Selection | None = None,
+) -> DentSearch:
+    """Find where a scan departs from a reference, or from its own smooth hull, by more than chance.
+
+    Args:
+        project: A scan with finished cloud and mesh stages.
+        reference: The surface it should have, in the scan's world; None: a smooth one through the
+            scan itself, that follows nothing narrower than `largest`.
+        smallest: Width of the smallest dent looked for [m].
+        largest: Width of the largest one [m]; farther away a point is none of the reference.
+        least_depth: Depth below which none is told [m].
+        name: What to call it.
+        selection: Which part of the scan; all of it unless given.
+
+    Raises:
+        MissingResult: The cloud or the mesh stage has not been finished.
+        NotEnoughData: The part is too small.
+        InputError: The name is none for a file, or a size is not one.
+    """
+    measure_file(project, name)
+    sample = load_sample(project, selection)
+    surface = project.load_mesh()
+    if reference is None:
+        deviation = deviation_from_smooth(sample, largest=largest)
+    else:
+        deviation = deviation_from_mesh(
+            sample, reference.mesh, within=largest, sigma=reference.sigma_along
+        )
+    search = find_dents(sample, deviation, smallest=smallest, least_depth=least_depth)
+    _save_points(project, name, sample, deviation)
+    _draw(project, name, surface, sample, deviation)
+    details: dict[str, object] = {"dents": [_as_plain(dent) for dent in search.dents]}
+    if reference is not None:
+        details |= _how_aligned(reference)
+    threshold = Quantity("threshold", search.threshold, "m", search.noise, 0.0)
+    save_measurement(project, name, Measurement("dents", (threshold,), details))
+    return search
+
+
+def _save_points(project: Project, name: str, sample: Sample, deviation: Deviation) -> int:
+    points, sigma = sample.cloud.points, sigma_of_points(sample, deviation)
+    save_deviation_ply(measure_file(project, name, "ply"), points, deviation, sigma)
+    table = measure_file(project, name, "csv")
+    return save_deviation_csv(table, points, deviation.values, sigma)
+
+
+def _draw(project: Project, name: str, surface: Mesh, sample: Sample, deviation: Deviation) -> None:
+    """Draw the scan's surface, coloured by its deviation."""
+    colours = SignedValues(sample.cloud.points, deviation.values)
+    for view in standard_views(project.load_trajectory()):
+        if view.name in _PICTURES:
+            picture = render(surface, view, colours=colours)
+            write_image(measure_file(project, f"{name}-{view.name}", "png"), picture)
+
+
+def _how_aligned(reference: Reference) -> dict[str, object]:
+    alignment = reference.alignment
+    if alignment is None:
+        return {"aligned": False}
+    moved = alignment.correction.inverse()
+    return {
+        "aligned": True,
+        "reference_moved_m": moved.translation.tolist(),
+        "reference_turned_wxyz": moved.as_quaternion()[0].tolist(),
+        "alignment_rms_m": alignment.rms,
+        "open_directions": [str(direction) for direction in alignment.open_directions],
+    }
+
+
+def _as_plain(dent: Dent) -> dict[str, object]:
+    return {
+        "place_m": dent.place.tolist(),
+        "sigma_place_m": np.asarray(dent.sigma_place).tolist(),
+        "depth_m": as_plain(dent.depth),
+        "diameter_m": as_plain(dent.diameter),
+        "volume_m3": as_plain(dent.volume),
+        "points": dent.num_points,
+    }

@@ -1,0 +1,72 @@
+"""What a scan is compared with: a mesh file, or the surface of an earlier scan."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from ..errors import InputError
+from ..geometry.alignment import Alignment, align_surfaces
+from ..geometry.surface_points import SurfacePoints
+from ..io.mesh_files import load_mesh
+from ..project import Project
+from ..types.arrays import Directions, Points, Scalars
+from ..types.cloud import PointCloud
+from ..types.mesh import Mesh
+
+UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254}
+"""Lengths of the units that meshes come in [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """A surface in the scan's world, and how well its place is known."""
+
+    mesh: Mesh
+    """The surface [m]."""
+    alignment: Alignment | None = None
+    """How it was laid on the scan; None: it was taken as it is."""
+
+    @property
+    def sigma_along(self) -> Callable[[Points, Directions], Scalars] | None:
+        """Standard deviation of its place at points, along directions [m]; None: exact."""
+        if self.alignment is None:
+            return None
+        alignment = self.alignment
+        reference_from_scan = alignment.target_from_source
+
+        def sigma(points: Points, directions: Directions) -> Scalars:
+            there = reference_from_scan @ points
+            return alignment.sigma_along(there, directions @ reference_from_scan.rotation.T)
+
+        return sigma
+
+
+def load_reference(path: Path, *, unit: str = "m") -> Reference:
+    """Read a mesh file, or the surface of a finished scan's folder, as it is.
+
+    Args:
+        path: A .ply, .stl or .glb file, or a scan's folder.
+        unit: Unit of the file: m, cm, mm or in.
+
+    Raises:
+        InputError: The unit is unknown, or the file is of another format.
+        FormatError: The file is no mesh.
+        MissingResult: The folder holds no scan with a surface.
+    """
+    if unit not in UNITS:
+        raise InputError(f"The unit must be one of {', '.join(UNITS)}, got {unit!r}.")
+    mesh = Project(path).load_mesh() if path.is_dir() else load_mesh(path)
+    return Reference(replace(mesh, vertices=mesh.vertices * UNITS[unit]))
+
+
+def lay_on(reference: Reference, cloud: PointCloud) -> Reference:
+    """Lay a reference on a scan by ICP, as far as their overlap shows how.
+
+    Raises:
+        Degenerate: They do not overlap: bring the reference nearly into place first.
+    """
+    scan, surface = SurfacePoints.from_cloud(cloud), SurfacePoints.from_mesh(reference.mesh)
+    alignment = align_surfaces(scan, surface)
+    scan_from_reference = alignment.target_from_source.inverse()
+    moved = replace(reference.mesh, vertices=scan_from_reference @ reference.mesh.vertices)
+    return Reference(moved, alignment)
