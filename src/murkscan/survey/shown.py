@@ -56,6 +56,11 @@ def load_model(project: Project, *, most: int, deviation: str = DEVIATION) -> Mo
     return model.with_layer(layer, at=points)
 
 
+def folder_of(project: Project) -> str:
+    """Name a scan by its folder, as told from another of the same recording's name."""
+    return "/".join(project.root.resolve().parts[-2:])
+
+
 def title_of(project: Project) -> str:
     """Name a scan by its recording, and a merged cloud by its folder."""
     return Path(project.load_scan()["recording"].get("path", project.root.resolve())).name
@@ -71,7 +76,10 @@ def deviation_digest(project: Project, name: str) -> str | None:
     """
     file = measure_file(project, name)
     is_there = file.exists() and measure_file(project, name, "ply").exists()
-    if is_there and load_json(file).get("inputs", {}).get("cloud") == project.finished("cloud").digest:
+    if (
+        is_there
+        and load_json(file).get("inputs", {}).get("cloud") == project.finished("cloud").digest
+    ):
         return hashlib.sha256(file.read_bytes()).hexdigest()[:16]
     if name != DEVIATION:
         raise InputError(

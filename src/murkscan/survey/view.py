@@ -1,15 +1,16 @@
 """Show a scan's surface: pictures for print, and a page on which it is turned and measured."""
 
 import time
+from dataclasses import replace
 from typing import Any
 
 from ..errors import InputError
 from ..page import Gallery, Note, Picture, Section, render_page
 from ..project import Project
-from ..view import MOST, PICTURES, draw_pictures, render_viewer
+from ..view import MOST, PICTURES, Model, draw_pictures, render_viewer
 from .merge import is_merged
 from .progress import Progress, silent
-from .shown import DEVIATION, deviation_digest, load_model, title_of
+from .shown import DEVIATION, deviation_digest, folder_of, load_model, title_of
 
 
 def draw_views(
@@ -53,14 +54,23 @@ def draw_views(
     names = _draw(project, progress)
     title = title_of(project)
     project.save_pictures_page(_pictures_page(title, names))
-    shown = load_model(project, most=most, deviation=deviation)
-    before = None if other is None else load_model(other, most=most)
-    models = [model for model in (shown, before) if model is not None]
+    models = _load_models(project, other, deviation=deviation, most=most)
     page = render_viewer(models, title=title, pictures="pictures.html") if models else _empty(title)
     project.save_view_page(page)
-    result = {"pictures": names, "points": shown.num_measured if shown else 0}
+    result = {"pictures": names, "points": sum(model.num_measured for model in models)}
     stage.finish(result, since=since)
     return result
+
+
+def _load_models(
+    project: Project, other: Project | None, *, deviation: str, most: int
+) -> list[Model]:
+    """Load what there is to show; two scans are named by their folders."""
+    shown = load_model(project, most=most, deviation=deviation)
+    if other is None:
+        return [] if shown is None else [shown]
+    both = (shown, project), (load_model(other, most=most), other)
+    return [replace(model, name=folder_of(scan)) for model, scan in both if model is not None]
 
 
 def _draw(project: Project, progress: Progress) -> list[str]:

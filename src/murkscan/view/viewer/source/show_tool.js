@@ -7,6 +7,7 @@ const WORDS = { posterior: "probability", "sigma common": "sigma of calibration"
 export function showTool(app) {
   const scans = choice("Scan", app.models.map((model) => [model.number, model.name]),
     (number) => app.update({ scan: Number(number) }));
+  scans.element.classList.add("stacked");
   const kinds = choice("Show as", [["surface", "Surface"], ["points", "Points"]],
     (kind) => app.update({ kind }));
   const colours = make("select", {
