@@ -2,6 +2,10 @@
 
 Usage: python benchmarks/murk.py [--cases c3 ...] [--seeds 10 ...] [--pictures N] [--only NAME ...]
 
+All of it takes half an hour on two cores, with --peers three quarters. It can be run in parts that
+share a --cache; --page then makes the page of what is there:
+python benchmarks/murk.py --cases --cache DIR --page
+
 A quick look, at 20 pictures of one rung, which the folder keeps for the next time:
 python benchmarks/murk.py --cases c3 --seeds 10 --pictures 20 --only Murk --cache DIR
 """

@@ -9,8 +9,7 @@ noise-free stripe, over nine frames, reach 200 grey levels up to c = 3 /m, then 
 Finders were tuned on seeds 0 to 2; none of the seeds below was looked at for that.
 
 - A true centre is *visible* if its `crlb_px`, the bound of its scan line alone, is at most 0.5
-  px. From c = 3 /m on that is the hull without the wall,
-  which is why recall may rise there.
+  px. From c = 3 /m on that is the hull without the wall, which is why recall may rise there.
 - A found centre is *right* if it is, one to one, the nearest within 1.5 px (of the full frame) of
   a true centre of the line itself in the same frame and scan line. *Recall* is the share of
   visible centres that are found. *Precision* is the share of found ones that are right: a true
@@ -33,10 +32,10 @@ Finders were tuned on seeds 0 to 2; none of the seeds below was looked at for th
 
 WATERS = """\
 One thing is changed at a time: *ambient*, daylight that raises the background to some 50 grey
-levels; *gloss*, 0.15 on all surfaces; *h264*, kept by H.264 at crf 23; *phase*, Henyey-Greenstein
-with g = 0.9 in place of Petzold's harbour; *skirt*, b/c = 0.95 in place of 0.83; *paint*, bands
-of 0.03 and 0.11 along the hull in place of growth; *noise*, 25 e⁻ of reading noise in place of
-9.
+levels; *gloss*, 0.15 on all surfaces; *h264*, kept by H.264 at crf 23 (the bound does not know
+of it); *phase*, Henyey-Greenstein with g = 0.9 in place of Petzold's harbour; *skirt*, b/c =
+0.95 in place of 0.83; *paint*, bands of 0.03 and 0.11 along the hull in place of growth;
+*noise*, 25 e⁻ of reading noise in place of 9.
 
 *traced* has nothing of the simulator: ten frames of a flat wall (albedo 0.2, from 0.72 to 0.88
 m), whose light Mitsuba traced (`path_tracer_scene`: 320 × 240 px, a stripe of 4.7 px, 1σ, b/c
