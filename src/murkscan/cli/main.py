@@ -21,7 +21,7 @@ _COMMANDS = {
     "merge": "Lay several scans of one object on another, as one cloud.",
     "mesh": "Make a surface from the cloud.",
     "measure": "Take measures of a scan, each with its uncertainty.",
-    "view": "Draw pictures of the surface.",
+    "view": "Draw the surface, and write a page to turn, cut and measure it on.",
     "report": "Write a page on how the scan went.",
     "simulate": "Make a recording whose truth is known.",
 }

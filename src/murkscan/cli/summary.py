@@ -67,5 +67,5 @@ def print_summary(project: "Project") -> None:
         return
     print(f"cloud      {root / 'cloud' / 'cloud.ply'}")
     print(f"model      {root / 'mesh' / 'mesh.glb'}, .ply, .stl")
-    print(f"pictures   {root / 'view' / 'index.html'}")
+    print(f"to look at {root / 'view' / 'index.html'}, .png")
     print(f"report     {root / 'report' / 'index.html'}")
