@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -84,6 +85,14 @@ narrower ones."""
 _FEW = 500
 """Differences that a bin has at least: their variance is then known to 6 %."""
 
+_LAGS = (1, 8)
+"""Distances of the pixels whose differences are taken: neighbours, and those of other blocks."""
+_SMOOTHED = 2.0
+"""Ratio of the noise of far pixels to that of near ones, which then is less than rounding alone
+gives, from which an encoder has smoothed it away."""
+_STEP = 1.0
+"""Least variance then [grey levels²]: what is left are blocks that differ by a level."""
+
 Bins = Float[np.ndarray, "bins 3"]
 """Mean level, variance of a pixel, number of differences."""
 
@@ -100,7 +109,17 @@ def learn_levels(images: Sequence[Image]) -> Noise:
         the one-sided fit are ours.
     """
     white = _learn_white(images)
-    level, bend = (np.concatenate(parts) for parts in zip(*map(_bends, images), strict=True))
+    level = float(np.median([np.median(image) for image in images]))
+    near, far = (_learn_law(images, white, lag) for lag in _LAGS)
+    seen, beyond = (law.fixed + law.gain * level for law in (near, far))
+    is_smoothed = seen < _QUANTISATION**2 and beyond > _SMOOTHED * seen
+    return replace(far, least=_STEP) if is_smoothed else near
+
+
+def _learn_law(images: Sequence[Image], white: float, lag: int) -> Noise:
+    """Estimate the noise from pixels that are `lag` apart."""
+    bends = (_bends(image, lag) for image in images)
+    level, bend = (np.concatenate(parts) for parts in zip(*bends, strict=True))
     keep = level < 0.85 * white
     bins = _bin_bends(level[keep], bend[keep])
     # Where black cuts the noise off, it seems to grow with the level.
@@ -120,9 +139,10 @@ def _learn_white(images: Sequence[Image]) -> float:
     return float(top if piled and top > 0 else np.iinfo(levels.dtype).max)
 
 
-def _bends(image: Image) -> tuple[Scalars, Scalars]:
+def _bends(image: Image, lag: int) -> tuple[Scalars, Scalars]:
     """Give the mean level and the fourth difference at every second pixel."""
-    windows = np.lib.stride_tricks.sliding_window_view(image, len(_KERNEL), axis=1)[:, ::2]
+    reach = lag * (len(_KERNEL) - 1) + 1
+    windows = np.lib.stride_tricks.sliding_window_view(image, reach, axis=1)[:, ::2, ::lag]
     return windows.mean(axis=2).ravel(), (windows @ _KERNEL.astype(np.int32)).ravel().astype(float)
 
 

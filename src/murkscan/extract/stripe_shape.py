@@ -223,7 +223,7 @@ def _explain(bends: Float[np.ndarray, "m 2"]) -> tuple[float, float]:
     if len(rest) < 3 * _ENOUGH:
         return 1.1, float(np.sqrt(floor))
     factor = np.quantile(np.abs(rest[:, 1]) / np.sqrt(rest[:, 0] ** 2 + floor), _ONE_SIGMA)
-    return float(np.clip(factor, 1.0, 1.3)), float(np.sqrt(floor))
+    return float(np.clip(factor, 1.0, 3.0)), float(np.sqrt(floor))
 
 
 def _weighted_median(values: Scalars, weights: Scalars) -> float:
