@@ -41,7 +41,7 @@ def find_outliers(
 
 
 def remove_outliers(cloud: PointCloud, *, max_jump: float | None = None) -> PointCloud:
-    """Take out the points that stand alone or stand out: what `Sparse` finds.
+    """Take out the points that stand alone, in specks or out: what `Sparse` finds.
 
     For those that need more than the points themselves, see `find_outliers`.
 
