@@ -1,25 +1,29 @@
-"""Which extractor? Hold each against the true centres of a simulated recording."""
+"""Which extractor? Hold each against the true centres of a recording in murky water."""
 
 import numpy as np
 
 import murkscan as ms
 from murkscan.simulate import load_scene, simulate_frames
 
-scene = load_scene("hull-c0.3")
+scene = load_scene("hull-c3")
 made = list(simulate_frames(scene, 300, 312))
+frames = [one.frame for one in made]
+finders = (ms.Murk(), ms.GrayGravity(), ms.GaussianFit(), ms.Steger(), ms.ThresholdSkeleton())
 
-for extractor in (ms.GrayGravity(), ms.GaussianFit(), ms.Steger(), ms.ThresholdSkeleton()):
-    background = extractor.learn([one.frame for one in made], scene.rig)
-    errors, found, there = [], 0, 0
-    for one in made:
-        stripe = next(extractor.extract([one.frame], scene.rig, background))
-        truth = dict(zip(one.stripe.pixels[:, 0].astype(int), one.stripe.pixels[:, 1], strict=True))
+for extractor in finders:
+    background = extractor.learn(frames, scene.rig)
+    errors, given, there = [], 0, 0
+    for one, stripe in zip(made, extractor.extract(frames, scene.rig, background), strict=True):
+        seen = one.stripe[one.stripe.crlb <= 0.5]
+        truth = dict(zip(seen.pixels[:, 0].astype(int), seen.pixels[:, 1], strict=True))
         columns = stripe.pixels[:, 0].astype(int)
         error = np.array(
             [v - truth.get(u, np.inf) for u, v in zip(columns, stripe.pixels[:, 1], strict=True)]
         )
-        near = np.abs(error) < 1.5
-        errors.append(error[near])
-        found, there = found + near.sum(), there + len(truth)
-    rms = np.sqrt(np.mean(np.concatenate(errors) ** 2))
-    print(f"{type(extractor).__name__:18} {found / there:6.1%} found, RMS {rms:.3f} px")
+        errors.append(error[np.abs(error) < 1.5])
+        given, there = given + len(stripe), there + len(truth)
+    right = np.concatenate(errors)
+    print(
+        f"{type(extractor).__name__:18} {len(right) / there:6.1%} of the visible centres found, "
+        f"{given - len(right):5} other points, RMS {np.sqrt(np.mean(right**2)):.3f} px"
+    )

@@ -70,6 +70,11 @@ def test_nearer_surfaces_lie_on_the_side_away_from_the_laser():
     assert nearer_side(_rig(-0.3)) == 1
 
 
+def test_a_rig_whose_sheet_is_out_of_view_has_no_nearer_side():
+    camera = Camera(SIZE, (5000.0, 5000.0), (119.5, 99.5))
+    assert nearer_side(Rig(camera, (Laser.from_baseline_angle(0.3, 1.7, "y"),))) == 0
+
+
 def test_a_recording_tells_how_murky_the_water_was():
     """Shot noise and rounding at 1 to 60 grey levels leave some per cent."""
     rig = _rig()

@@ -113,8 +113,7 @@ def nearer_side(rig: Rig, *, laser: int = 0) -> int:
     ranges = np.linalg.norm(
         intersect_rays_with_sheet(rays, rig.lasers[laser], index) - rays.origins, axis=1
     )
-    farther = np.diff(ranges)
-    return -int(np.sign(np.nan_to_num(np.nanmedian(np.sign(farther)))))
+    return -int(np.sign(np.sum(np.sign(np.nan_to_num(np.diff(ranges))))))
 
 
 def _look(glow: Glow, rig: Rig, laser: int, phase: AbstractPhase) -> _Seen:

@@ -43,7 +43,7 @@ class Murk(AbstractExtractor):
     look_ahead: ClassVar[int] = 7
 
     min_posterior: float = 0.5
-    """Probability from which a point is given."""
+    """Probability from which a point is given, at least a half."""
     min_score: float = 2.5
     """Standard deviations of the noise from which a ridge is looked at."""
     clutter: float = 0.08
@@ -55,9 +55,9 @@ class Murk(AbstractExtractor):
 
     def __post_init__(self) -> None:
         """Refuse settings that are no probabilities."""
-        if not (0.0 < self.min_posterior < 1.0 and self.min_score >= 1.0):
+        if not (0.5 <= self.min_posterior < 1.0 and self.min_score >= 1.0):
             raise InputError(
-                "Murk needs min_posterior between 0 and 1 and min_score ≥ 1, got "
+                "Murk needs min_posterior from 0.5 up to 1 and min_score ≥ 1, got "
                 f"{self.min_posterior:g} and {self.min_score:g}."
             )
         self._markov()
