@@ -1,7 +1,11 @@
 """murkscan mesh: make a surface."""
 
 from pathlib import Path
+from typing import Annotated, Literal
 
+from cyclopts import Parameter
+
+from ..errors import InputError
 from .choices import MesherName, make_mesher
 from .options import Settings
 from .progress import progress_bars
@@ -12,6 +16,10 @@ def mesh(
     *,
     mesher: MesherName = "grid",
     settings: Settings = (),
+    close_holes_mm: float | None = None,
+    faces: int | None = None,
+    colour: Literal["depth", "signal", "none"] = "depth",
+    export: Annotated[tuple[Path, ...], Parameter(negative=())] = (),
 ) -> None:
     """Make a surface from the cloud of a scan.
 
@@ -23,11 +31,37 @@ def mesh(
         The way to make a surface.
     settings
         A setting of the mesher, as NAME=NUMBER; may be given again.
+    close_holes_mm
+        Close holes up to this width [mm]. In mesh.ply their triangles are marked as filled.
+    faces
+        Leave about so many triangles: few where the surface is flat, more where it is curved.
+    colour
+        Colour the vertices by depth, or by the stripe's brightness.
+    export
+        Write the surface to this file, too: .ply, .stl, .obj or .glb; may be given again.
     """
+    from ..io.mesh_files import check_mesh_suffix
+    from ..mesh import ByDepth, BySignal
     from ..project import Project
-    from ..survey.mesh import build_mesh
+    from ..survey.mesh import Finish, build_mesh, export_mesh
     from .summary import print_result
 
+    if close_holes_mm is not None and not 0 < close_holes_mm < float("inf"):
+        raise InputError(f"--close-holes-mm must be above 0, got {close_holes_mm:g}.")
+    if faces is not None and faces < 4:
+        raise InputError(f"--faces must be 4 or more, got {faces}.")
+    for path in export:
+        check_mesh_suffix(path)
+    finish = Finish(
+        largest_hole=None if close_holes_mm is None else close_holes_mm / 1e3,
+        faces=faces,
+        paint={"depth": ByDepth(), "signal": BySignal(), "none": None}[colour],
+    )
+    project = Project(out)
     with progress_bars() as progress:
-        result = build_mesh(Project(out), make_mesher(mesher, settings), progress=progress)
+        chosen = make_mesher(mesher, settings)
+        result = build_mesh(project, chosen, finish=finish, progress=progress)
+        written = [export_mesh(project, path) for path in export]
     print_result("mesh", result, out / "mesh")
+    for path, count in zip(export, written, strict=True):
+        print(f"export: triangles {count:,}; {path}")

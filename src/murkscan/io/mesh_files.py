@@ -1,17 +1,19 @@
-"""Meshes as PLY, STL and GLB files, by trimesh."""
+"""Meshes as PLY, STL, OBJ and GLB files, by trimesh."""
 
-import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import trimesh
 
 from ..errors import FormatError, InputError
-from ..types.arrays import Faces
+from ..types.arrays import Colours, FaceMask, Faces
 from ..types.mesh import Mesh
+from . import mesh_glb, mesh_obj
 from .atomic import replacing
+from .mesh_ply import as_ply
 
-_SUFFIXES = (".ply", ".stl", ".glb")
+_SUFFIXES = (".ply", ".stl", ".obj", ".glb")
 _GLB_FROM_OURS = np.array([1.0, -1.0, -1.0])
 """x stays right; our y is down and z away from the viewer, those of GLB are up and towards him."""
 
@@ -19,12 +21,14 @@ _GLB_FROM_OURS = np.array([1.0, -1.0, -1.0])
 def save_mesh(path: Path, mesh: Mesh) -> None:
     """Write a mesh in the format that the path's suffix names.
 
-    PLY and STL keep our axes and metres (STL knows no unit). GLB is in metres with y up and z
-    towards the viewer by its standard, so its y and z are ours negated: half a turn about x, after
-    which a viewer shows the front of the object upright, as the camera saw it.
+    PLY, STL and OBJ keep our axes and metres (STL and OBJ know no unit). GLB is in metres with y up
+    and z towards the viewer by its standard, so its y and z are ours negated: half a turn about x,
+    after which a viewer shows the front of the object upright, as the camera saw it. Colours are
+    written to all but STL, the mark of triangles that close a hole to PLY only.
 
     Args:
-        path: Where the file shall be: .ply (vertices in double precision), .stl or .glb (single).
+        path: Where the file shall be: .ply or .obj (vertices in double precision), .stl or .glb
+            (single).
         mesh: The surface [m].
 
     Raises:
@@ -34,55 +38,52 @@ def save_mesh(path: Path, mesh: Mesh) -> None:
     kind = _kind(path)
     if len(mesh.faces) == 0:
         raise InputError(f"The mesh for {path} has no triangles; nothing is written.")
-    if kind == "ply":
-        data = _as_ply(mesh)
-    else:
-        vertices = mesh.vertices * _GLB_FROM_OURS if kind == "glb" else mesh.vertices
-        made = trimesh.Trimesh(vertices, mesh.faces, process=False, validate=False)
-        data = made.export(file_type=kind)
     with replacing(path) as aside:
-        aside.write_bytes(data)
+        aside.write_bytes(_WRITERS[kind](mesh))
 
 
 def load_mesh(path: Path) -> Mesh:
     """Read a mesh in the format that the path's suffix names, in our axes.
 
-    A GLB is turned back. The corners that an STL repeats for every triangle are joined.
+    A GLB is turned back. The corners that an STL repeats for every triangle are joined. Of an OBJ
+    and a GLB only the triangles are read, never their materials.
 
     Raises:
-        InputError: Another suffix than .ply, .stl or .glb.
-        FormatError: The file is no such mesh, or is damaged.
+        InputError: Another suffix than .ply, .stl, .obj or .glb.
+        FormatError: The file is no such mesh, or is damaged; one whose tables claim more than it
+            holds costs no memory.
         FileNotFoundError: There is no such file.
     """
     kind = _kind(path)
     data = path.read_bytes()
     if kind == "glb":
-        _check_glb(path, data)
+        data = mesh_glb.only_geometry(path, data)
+    if kind == "obj":
+        data = mesh_obj.only_geometry(data)
     try:
         loaded = trimesh.load_mesh(trimesh.util.wrap_as_stream(data), kind, process=kind == "stl")
-        vertices, faces = np.asarray(loaded.vertices), np.asarray(loaded.faces)
+        vertices, faces = np.asarray(loaded.vertices, float), np.asarray(loaded.faces, np.int64)
+        colours, filled = _find_colours(loaded, kind), _find_filled(loaded, len(faces))
     # Which error a damaged file ends in is up to trimesh's readers: any.
     except Exception as error:
-        raise FormatError(f"{path} is not a {kind.upper()} file that can be read.") from error
+        raise FormatError(f"{path} is not {_NAMES[kind]} file that can be read.") from error
     if len(faces) == 0 or not np.isfinite(vertices).all() or not _is_inside(faces, len(vertices)):
         raise FormatError(f"{path} has no triangles, or some without a place; it is damaged.")
-    return Mesh(vertices * _GLB_FROM_OURS if kind == "glb" else vertices, faces)
+    vertices = vertices * _GLB_FROM_OURS if kind == "glb" else vertices
+    return Mesh(vertices, faces, filled, colours)
+
+
+def check_mesh_suffix(path: Path) -> None:
+    """Refuse a file whose suffix names no mesh format.
+
+    Raises:
+        InputError: The suffix is another than .ply, .stl, .obj or .glb.
+    """
+    _kind(path)
 
 
 def _is_inside(faces: Faces, count: int) -> bool:
     return bool(faces.min() >= 0 and faces.max() < count)
-
-
-def _check_glb(path: Path, data: bytes) -> None:
-    """Refuse a GLB whose tables claim more items than the file has bytes, before they are made."""
-    try:
-        length = int.from_bytes(data[12:16], "little")
-        tables = json.loads(data[20 : 20 + length])
-        counts = [int(table["count"]) for table in tables.get("accessors", [])]
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
-        raise FormatError(f"{path} is not a GLB file that can be read.") from error
-    if any(count > len(data) for count in counts):
-        raise FormatError(f"{path} claims {max(counts)} items in {len(data)} bytes; it is damaged.")
 
 
 def _kind(path: Path) -> str:
@@ -91,14 +92,58 @@ def _kind(path: Path) -> str:
     return path.suffix.lower()[1:]
 
 
-def _as_ply(mesh: Mesh) -> bytes:
-    """Write vertices in double precision, which trimesh does not; at sea numbers are large."""
-    faces = np.empty(len(mesh.faces), [("count", "u1"), ("corners", "<i4", 3)])
-    faces["count"], faces["corners"] = 3, mesh.faces
-    header = (
-        "ply\nformat binary_little_endian 1.0\ncomment murkscan: metres\n"
-        f"element vertex {len(mesh.vertices)}\n"
-        "property double x\nproperty double y\nproperty double z\n"
-        f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
+def _as_stl(mesh: Mesh) -> bytes:
+    made = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False, validate=False)
+    return made.export(file_type="stl")
+
+
+def _as_glb(mesh: Mesh) -> bytes:
+    colours = None if mesh.colours is None else _as_light(mesh.colours)
+    made = trimesh.Trimesh(
+        mesh.vertices * _GLB_FROM_OURS,
+        mesh.faces,
+        vertex_colors=colours,
+        process=False,
+        validate=False,
     )
-    return header.encode("ascii") + mesh.vertices.astype("<f8").tobytes() + faces.tobytes()
+    return made.export(file_type="glb")
+
+
+def _as_light(colours: Colours) -> Colours:
+    """Give colours as GLB has them: in proportion to light, where ours are as a screen takes them.
+
+    References:
+        IEC 61966-2-1, sRGB; glTF 2.0, section 3.7.2.1: COLOR_0 is linear.
+    """
+    share = np.arange(256) / 255
+    light = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+    return np.rint(255 * light).astype(np.uint8)[colours]
+
+
+def _from_light(colours: Colours) -> Colours:
+    light = np.arange(256) / 255
+    share = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+    return np.rint(255 * share).astype(np.uint8)[colours]
+
+
+def _find_colours(loaded: trimesh.Trimesh, kind: str) -> Colours | None:
+    """Give the vertices' colours, where the file has them."""
+    if loaded.visual.kind != "vertex":
+        return None
+    colours = np.array(loaded.visual.vertex_colors[:, :3], np.uint8)
+    return _from_light(colours) if kind == "glb" else colours
+
+
+def _find_filled(loaded: trimesh.Trimesh, count: int) -> FaceMask | None:
+    """Give which triangles close a hole, where a PLY says so."""
+    content = loaded.metadata.get("_ply_raw", {}).get("face", {}).get("data")
+    names: Any = content if isinstance(content, dict) else getattr(content, "dtype", None)
+    names = names.names or () if isinstance(names, np.dtype) else names or ()
+    if "filled" not in names:
+        return None
+    filled = np.asarray(content["filled"]).reshape(-1) != 0
+    return filled if len(filled) == count else None
+
+
+_WRITERS = {"ply": as_ply, "stl": _as_stl, "obj": mesh_obj.as_obj, "glb": _as_glb}
+_NAMES = {"ply": "a PLY", "stl": "an STL", "obj": "an OBJ", "glb": "a GLB"}

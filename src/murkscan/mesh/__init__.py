@@ -1,8 +1,15 @@
 """Make a surface of a cloud.
 
-Every mesher is a frozen dataclass: its fields are its settings, `mesh` is its one verb.
+Every mesher is a frozen dataclass: its fields are its settings, `mesh` is its one verb. What is
+done to a surface afterwards, on request, are functions and paints.
 """
 
 from .base import AbstractMesher as AbstractMesher
+from .by_depth import ByDepth as ByDepth
+from .by_signal import BySignal as BySignal
+from .decimate import decimate as decimate
 from .grid_mesh import GridMesh as GridMesh
+from .holes import ClosedHoles as ClosedHoles
+from .holes import close_holes as close_holes
+from .paint import AbstractPaint as AbstractPaint
 from .poisson import Poisson as Poisson

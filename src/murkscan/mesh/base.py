@@ -44,4 +44,5 @@ def drop_unused_vertices(mesh: Mesh) -> Mesh:
     used = np.zeros(len(mesh.vertices), bool)
     used[mesh.faces] = True
     number = np.cumsum(used) - 1
-    return Mesh(mesh.vertices[used], number[mesh.faces])
+    colours = None if mesh.colours is None else mesh.colours[used]
+    return Mesh(mesh.vertices[used], number[mesh.faces], mesh.filled, colours)

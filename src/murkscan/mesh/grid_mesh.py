@@ -11,6 +11,7 @@ from ..types.arrays import Faces, Indices
 from ..types.cloud import PointCloud
 from ..types.mesh import Mesh
 from .base import AbstractMesher, drop_unused_vertices, empty_mesh
+from .smooth import smooth_points
 
 
 @final
@@ -18,9 +19,9 @@ from .base import AbstractMesher, drop_unused_vertices, empty_mesh
 class GridMesh(AbstractMesher):
     r"""Join each point to its neighbours along its profile and across to the next one.
 
-    Every vertex is a measured point, and nothing is smoothed. The surface is cut at depth jumps and
-    open where a profile or a scan line is missing. Four neighbours make two triangles, three make
-    one::
+    Every vertex is a measured point, moved along its normal by no more than its standard deviation,
+    to where its neighbours say that it lies. The surface is cut at depth jumps and open where a
+    profile or a scan line is missing. Four neighbours make two triangles, three make one::
 
         a --- b                                              a --- b
         | \   |      split along the shorter diagonal        |   /
@@ -30,11 +31,18 @@ class GridMesh(AbstractMesher):
     max_jump: float | None = None
     """Largest distance between neighbours on one surface [m]. None: five times the usual distance
     in that direction, and four standard deviations of the points."""
+    smoothing: float = 1.0
+    """How far a vertex may move to even out noise, in its own standard deviations, up to 1; 0 keeps
+    the measured points."""
 
     def __post_init__(self) -> None:
-        """Refuse a jump that cuts everything."""
+        """Refuse a jump that cuts everything, and smoothing beyond what noise explains."""
         if self.max_jump is not None and not self.max_jump > 0:
             raise InputError(f"max_jump must be above 0, got {self.max_jump:g} m.")
+        if not 0 <= self.smoothing <= 1:
+            raise InputError(
+                f"smoothing must lie from 0 to 1 standard deviation, got {self.smoothing:g}."
+            )
 
     def mesh(self, cloud: PointCloud) -> Mesh:
         """Make the surface; its vertices are the points that have neighbours, in their order."""
@@ -43,7 +51,8 @@ class GridMesh(AbstractMesher):
         grid = ScanGrid.from_cloud(cloud, max_jump=self.max_jump)
         along, across = grid.linked(0, 1), grid.linked(1, 0)
         faces = np.concatenate([_full_cells(grid, along, across), _corners(along, across)])
-        return drop_unused_vertices(Mesh(cloud.points, _face_camera(grid, faces)))
+        vertices = smooth_points(grid, along, across, most=self.smoothing)
+        return drop_unused_vertices(Mesh(vertices, _face_camera(grid, faces)))
 
 
 def _full_cells(grid: ScanGrid, along: Indices, across: Indices) -> Faces:

@@ -32,6 +32,10 @@ Mask = Bool[np.ndarray, "n"]
 """One yes or no an item."""
 Faces = Int[np.ndarray, "m 3"]
 """Triangles: three vertex numbers a row, counter-clockwise seen from outside."""
+FaceMask = Bool[np.ndarray, "m"]
+"""One yes or no a triangle."""
+Colours = UInt8[np.ndarray, "n 3"]
+"""Red, green and blue from 0 to 255, one colour a row."""
 Quaternions = Float[np.ndarray, "n 4"]
 """Unit quaternions, one a row, w x y z."""
 Image = Shaped[np.ndarray, "h w"]

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from .arrays import Faces, Points
+from .arrays import Colours, FaceMask, Faces, Points
 
 
 @dataclass(frozen=True, eq=False)
@@ -13,3 +13,7 @@ class Mesh:
     """Corners of the triangles [m]."""
     faces: Faces
     """Three vertex numbers a triangle, counter-clockwise seen from outside."""
+    filled: FaceMask | None = None
+    """Which triangles close a hole, so that nothing was measured there; None: no such triangle."""
+    colours: Colours | None = None
+    """Red, green and blue of each vertex, as a screen shows them; None: it has no colours."""

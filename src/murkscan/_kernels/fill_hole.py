@@ -1,0 +1,71 @@
+"""The triangulation of a closed line of points that has the least area."""
+
+import numba
+import numpy as np
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy")
+def least_area(points, is_barred):
+    """Cover a closed line by triangles between its points, of least area altogether.
+
+    Args:
+        points: The line's corners in order [m], n × 3, n at least 3.
+        is_barred: Which pairs of corners no new side may join, n × n.
+
+    Returns:
+        Three corners a triangle, in the line's own sense, (n - 2) × 3; none where the bars leave no
+        triangulation.
+
+    References:
+        Barequet and Sharir, Filling gaps in the boundary of a polyhedron, Computer Aided Geometric
+        Design 12, 1995, section 3.
+    """
+    n = len(points)
+    cost = np.zeros((n, n))
+    split = np.zeros((n, n), np.int64)
+    for width in range(2, n):
+        for i in range(n - width):
+            j = i + width
+            cost[i, j] = np.inf
+            if is_barred[i, j] and width < n - 1:
+                continue
+            for k in range(i + 1, j):
+                whole = cost[i, k] + cost[k, j]
+                if whole < cost[i, j]:
+                    whole += _area(points, i, k, j)
+                    if whole < cost[i, j]:
+                        cost[i, j] = whole
+                        split[i, j] = k
+    if not np.isfinite(cost[0, n - 1]):
+        return np.zeros((0, 3), np.int64)
+    return _collect(split, n)
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy")
+def _area(points, i, j, k):
+    ux, vx = points[j, 0] - points[i, 0], points[k, 0] - points[i, 0]
+    uy, vy = points[j, 1] - points[i, 1], points[k, 1] - points[i, 1]
+    uz, vz = points[j, 2] - points[i, 2], points[k, 2] - points[i, 2]
+    x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+    return 0.5 * np.sqrt(x * x + y * y + z * z)
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy")
+def _collect(split, n):
+    """Follow the splits from the whole line down to single triangles."""
+    triangles = np.empty((n - 2, 3), np.int64)
+    waiting = np.empty((n, 2), np.int64)
+    waiting[0, 0], waiting[0, 1] = 0, n - 1
+    left, made = 1, 0
+    while left:
+        left -= 1
+        i, j = waiting[left]
+        if j - i < 2:
+            continue
+        k = split[i, j]
+        triangles[made, 0], triangles[made, 1], triangles[made, 2] = i, k, j
+        made += 1
+        waiting[left, 0], waiting[left, 1] = i, k
+        waiting[left + 1, 0], waiting[left + 1, 1] = k, j
+        left += 2
+    return triangles

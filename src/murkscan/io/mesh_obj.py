@@ -1,0 +1,37 @@
+"""Meshes as OBJ files, and what of one a library is given to read."""
+
+import io
+import re
+
+import numpy as np
+
+from ..types.mesh import Mesh
+
+_GEOMETRY = re.compile(rb"^[vf][ \t].*$", re.MULTILINE)
+"""Lines that place corners and triangles; the others name groups and materials."""
+_EXTRAS = re.compile(rb"/\S*")
+"""What a corner of a face says beside its vertex: texture and normal."""
+
+
+def as_obj(mesh: Mesh) -> bytes:
+    """Give an OBJ file: vertices, with the colours that most programs read behind them, and faces.
+
+    Positions are written to a tenth of a micrometre.
+    """
+    text = io.BytesIO(b"")
+    text.write(b"# murkscan: metres\n")
+    columns, form = mesh.vertices, "v %.7f %.7f %.7f"
+    if mesh.colours is not None:
+        columns, form = np.column_stack([columns, mesh.colours / 255]), form + " %.4f %.4f %.4f"
+    np.savetxt(text, columns, form)
+    np.savetxt(text, mesh.faces + 1, "f %d %d %d")
+    return text.getvalue()
+
+
+def only_geometry(data: bytes) -> bytes:
+    """Give an OBJ file without all that is no triangle: materials, groups, textures, normals.
+
+    Thousands of materials of one triangle each would cost hours.
+    """
+    lines = _GEOMETRY.findall(data.replace(b"\r\n", b"\n").replace(b"\\\n", b" "))
+    return _EXTRAS.sub(b"", b"\n".join(lines))

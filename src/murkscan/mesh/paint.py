@@ -1,0 +1,38 @@
+"""Give a surface colours that say something."""
+
+import abc
+
+import matplotlib as mpl
+import numpy as np
+
+from ..types.arrays import Colours, Scalars
+from ..types.cloud import PointCloud
+from ..types.mesh import Mesh
+
+_SHARE = 0.5
+"""Percent of the vertices at each end of the values that may lie beyond the colours."""
+
+
+class AbstractPaint(abc.ABC):
+    """A way to colour a surface. Subclasses are final: wrap one, do not subclass it."""
+
+    @abc.abstractmethod
+    def paint(self, mesh: Mesh, cloud: PointCloud) -> Colours:
+        """Give each vertex a colour.
+
+        Args:
+            mesh: The surface, with one vertex or more.
+            cloud: The points that it was made of, one or more.
+        """
+
+
+def map_colours(values: Scalars, colour_map: str) -> Colours:
+    """Give values their colours, from end to end but for the last half percent.
+
+    Args:
+        values: One a vertex, in any unit.
+        colour_map: Its name in matplotlib.
+    """
+    low, high = np.percentile(values, [_SHARE, 100 - _SHARE])
+    share = (values - low) / (high - low) if high > low else np.full(len(values), 0.5)
+    return mpl.colormaps[colour_map](share, bytes=True)[:, :3]
