@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from murkscan.cloud import (
     OUTLIER_RULES,
@@ -93,6 +94,19 @@ def test_a_mirror_image_behind_the_surface_is_found_and_the_surface_stays():
     found = SeenThrough().find(there)
     assert found[false].mean() > 0.9
     assert found[~false].mean() < 1e-3
+
+
+@pytest.mark.parametrize("axis", "xyz")
+@pytest.mark.parametrize("surface", [step, rod, plate])
+def test_a_rig_that_is_a_degree_off_loses_nothing(surface, axis):
+    """Rays then pierce the edges of true steps by 0.5 m times a degree, 9 mm."""
+
+    def lean(profile):
+        turn = Rotation.from_euler(axis, 1, degrees=True).as_matrix()
+        return replace(profile, points=profile.points @ turn.T)
+
+    there, _ = seen(surface, add=lean)
+    assert not SeenThrough().find(there).any()
 
 
 def test_a_second_pass_that_drifted_by_less_than_the_clearance_stays():

@@ -10,29 +10,27 @@ from dataclasses import dataclass
 from typing import final
 
 import numpy as np
-from jaxtyping import Float, Int
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
+from jaxtyping import Int
 
 from ..errors import InputError
 from ..geometry.grid import NONE, ScanGrid
 from ..geometry.ray_casting import RayCaster
-from ..types.arrays import Faces, Indices, Mask, Scalars
+from ..types.arrays import Faces, Mask
 from ..types.mesh import Mesh
 from ..types.rays import Rays
 from .base import AbstractOutlierRule, SeenCloud
+from .pieces import number_pieces
 
 _SIGMAS = 4.0
 """Standard deviations that a ray may end behind a patch and still be of it."""
 _FACING = 0.35
 """Cosine of the angle between ray and normal below which a patch is grazed, not pierced."""
-_PIERCED = 0.3
-"""Share of the patches around a point that rays must have pierced. A cell of the grid has two
-patches and is met by one ray: about half of them are, and at a true edge only those beyond it."""
-_FEWEST = 3
-"""Rays that must have gone through around a point."""
-_ROUNDS = 3
-"""Times that points go with most of their neighbours: rays fall by chance, and fewer at a rim."""
+_PIERCED = 0.25
+"""Share of the patches of a piece that rays must have pierced. A cell of the grid has two patches
+and is met by one ray, so it is about half of them where the whole piece is false; where poses or a
+rig are millimetres off, rays pierce a true piece, too, but along its edges only."""
+_BEHIND = 0.5
+"""Share of the points of a piece that must lie behind larger pieces."""
 
 
 @final
@@ -40,9 +38,9 @@ _ROUNDS = 3
 class SeenThrough(AbstractOutlierRule):
     """Points that rays to other points go through, and points behind a surface that hides them.
 
-    Neighbours on the scan's grid make patches, and patches that hang together a piece. Where a ray
-    pierces a patch far in front of its end, the smaller piece is false: a fish before a hull, or
-    the hull's mirror image behind it.
+    Neighbours on the scan's grid make patches, and points that hang together a piece. Where rays
+    pierce a piece far in front of their ends, over its whole width, the smaller of the two is
+    false and goes as a whole: a fish before a hull, or the hull's mirror image behind it.
     """
 
     clearance: float = 0.05
@@ -65,15 +63,19 @@ class SeenThrough(AbstractOutlierRule):
         if len(seen.cloud) == 0:
             return is_false
         grid = seen.lay_grid()
-        faces, pieces = _patches(grid)
+        faces, piece = _patches(grid), number_pieces(grid)
         if len(faces) == 0:
             return is_false
         ray, face = self._pierce(seen, faces)
-        size = np.bincount(pieces)
-        is_front = size[pieces[faces[face, 0]]] <= size[pieces[ray]]
-        is_false[ray[~is_front]] = True
-        is_false |= _surrounded(faces, face[is_front], len(is_false))
-        return is_false
+        size, piece_of_face = np.bincount(piece), piece[faces[:, 0]]
+        of_two = piece_of_face[face] != piece[ray]
+        ray, face = ray[of_two], face[of_two]
+        is_front = size[piece_of_face[face]] <= size[piece[ray]]
+        pierced = np.bincount(piece_of_face[np.unique(face[is_front])], minlength=len(size))
+        behind = np.bincount(piece[ray[~is_front]], minlength=len(size))
+        patches = np.bincount(piece_of_face, minlength=len(size))
+        is_false_piece = (pierced > _PIERCED * patches) | (behind > _BEHIND * size)
+        return is_false_piece[piece]
 
     def _pierce(
         self, seen: SeenCloud, faces: Faces
@@ -92,38 +94,12 @@ class SeenThrough(AbstractOutlierRule):
         return ray[pierced], face[pierced]
 
 
-def _patches(grid: ScanGrid) -> tuple[Faces, Indices]:
-    """Make triangles between neighbours; number the piece that each point belongs to."""
+def _patches(grid: ScanGrid) -> Faces:
+    """Make triangles between neighbours."""
     along, across = grid.linked(0, 1), grid.linked(1, 0)
     corner = np.flatnonzero((along != NONE) & (across != NONE))
     opposite = across[along[corner]]
     closed = (opposite != NONE) & (opposite == along[across[corner]])
     a, d = corner[closed], opposite[closed]
     b, c = along[a], across[a]
-    faces = np.concatenate([np.stack([a, b, d], axis=1), np.stack([a, d, c], axis=1)])
-    return faces, _number_pieces(along, across)
-
-
-def _number_pieces(along: Indices, across: Indices) -> Indices:
-    count = len(along)
-    here = np.concatenate([np.flatnonzero(links != NONE) for links in (along, across)])
-    there = np.concatenate([links[links != NONE] for links in (along, across)])
-    links = coo_array((np.ones(len(here), bool), (here, there)), shape=(count, count))
-    return connected_components(links, directed=False)[1].astype(np.int64)
-
-
-def _surrounded(faces: Faces, pierced: Int[np.ndarray, " rays"], count: int) -> Mask:
-    """Find the points that enough rays have gone through on all sides, and what lies between."""
-    rays = np.bincount(pierced, minlength=len(faces)).astype(float)
-    around = _add_up(faces, np.ones(len(faces)), count)
-    through = _add_up(faces, (rays > 0).astype(float), count)
-    found = (through > _PIERCED * around) & (_add_up(faces, rays, count) >= _FEWEST)
-    for _ in range(_ROUNDS if found.any() else 0):
-        others = found[faces].sum(axis=1, keepdims=True) - found[faces]
-        of_found = np.bincount(faces.ravel(), weights=others.ravel(), minlength=count)
-        found |= of_found > np.maximum(around, 1)
-    return found
-
-
-def _add_up(faces: Faces, values: Float[np.ndarray, " m"], count: int) -> Scalars:
-    return np.bincount(faces.ravel(), weights=np.repeat(values, 3), minlength=count)
+    return np.concatenate([np.stack([a, b, d], axis=1), np.stack([a, d, c], axis=1)])

@@ -4,16 +4,12 @@ from dataclasses import dataclass
 from typing import final
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from ..errors import InputError
 from ..geometry.grid import NONE, ScanGrid
 from ..types.arrays import Indices, Mask
 from .base import AbstractOutlierRule, SeenCloud
-
-_SUPPORTS = ((0, 1), (0, 2), (1, 0), (1, 1), (1, -1), (2, 0))
-"""Cells, in profiles and scan lines, where a point of the same surface may lie; and opposite."""
+from .pieces import number_pieces
 
 
 @final
@@ -52,17 +48,8 @@ class Sparse(AbstractOutlierRule):
 
 
 def _in_specks(grid: ScanGrid, min_piece: int) -> Mask:
-    """Find the points of pieces that are too small; touching points are of one piece."""
-    here = np.arange(len(grid.cloud))
-    ours, theirs = [], []
-    for profiles, lines in _SUPPORTS:
-        there = grid.nearest(profiles, lines)
-        touching = np.flatnonzero(grid.touches(here, there, profiles, lines))
-        ours.append(touching.astype(np.int32))
-        theirs.append(there[touching].astype(np.int32))
-    pairs = (np.concatenate(ours), np.concatenate(theirs))
-    touches = coo_array((np.ones(len(pairs[0]), bool), pairs), shape=(len(here), len(here)))
-    piece = connected_components(touches, directed=False)[1]
+    """Find the points of pieces that are too small."""
+    piece = number_pieces(grid)
     return np.bincount(piece)[piece] < min_piece
 
 
