@@ -1,5 +1,7 @@
 """One point a voxel: weights, deviations, and the same result however the cloud comes in."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -100,6 +102,16 @@ def test_more_voxels_than_fit_are_thinned_in_shares():
     same(
         PointCloud.concatenate(list(thin_clouds(blocks, 0.005, most=500))), thin_cloud(cloud, 0.005)
     )
+
+
+def test_a_cloud_on_a_map_is_thinned_as_at_the_origin():
+    """Eastings and northings are millions of metres: cubes are counted from the first point."""
+    cloud = some_cloud(3000)
+    away = np.array([500_000.0, 4_000_000.0, 0.0])
+    there = thin_cloud(dataclasses.replace(cloud, points=cloud.points + away), 0.002)
+    here = thin_cloud(cloud, 0.002)
+    # At 4e6 m double precision has steps of 5e-10 m; sums of weights of 1e8 keep as many digits.
+    np.testing.assert_allclose(there.points - away, here.points, rtol=0, atol=5e-9)
 
 
 def test_an_empty_cloud_stays_empty():

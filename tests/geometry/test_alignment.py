@@ -149,6 +149,15 @@ def test_a_rough_start_is_taken_into_account():
     assert corner_distance(found.correction @ start, found.target_from_source) < 1e-12
 
 
+def test_clouds_on_a_map_are_laid_on_one_another():
+    random = np.random.default_rng(0)
+    away = Pose(np.eye(3), np.array([500_000.0, 4_000_000.0, 0.0]))
+    source, target = (moved(sample(waves, random), away) for _ in range(2))
+    found = align_clouds(source, target)
+    here = away.inverse() @ found.target_from_source @ away
+    assert corner_distance(here, Pose.identity()) < 1e-4
+
+
 def test_a_cloud_is_laid_on_a_mesh():
     sphere_mesh = Sphere(radius=0.5).mesh()
     mesh = Mesh(sphere_mesh.vertices - sphere_mesh.vertices.mean(axis=0) + [0, 0, 0.5],

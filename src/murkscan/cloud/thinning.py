@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from ..geometry.voxels import VoxelGrid
+from ..types.arrays import Vector
 from ..types.cloud import PointCloud
 
 _MOST = 6_000_000
@@ -75,13 +76,19 @@ class VoxelSums:
 
     def __init__(self, share: int, shares: int, *, most: int = _MOST) -> None:
         self._share, self._shares, self._most = share, shares, most
+        self._origin: Vector | None = None
         self._parts: list[np.ndarray] = []
         self.left_out: list[tuple[int, int]] = []
         """Shares for which there was no room: number, and of how many."""
 
     def add(self, cloud: PointCloud, voxel: float) -> None:
         """Add the points of a block."""
-        rows = _mine(_sum(cloud, voxel), self._share, self._shares)
+        if len(cloud) == 0:
+            return
+        if self._origin is None:
+            self._origin = np.round(cloud.points[0])
+        grid = VoxelGrid(cloud.points, voxel, self._origin)
+        rows = _mine(_sum(cloud, grid), self._share, self._shares)
         # Like sizes are merged with like, so that no voxel is merged more than log n times.
         while self._parts and len(self._parts[-1]) <= 2 * len(rows):
             rows = _merge([self._parts.pop(), rows])
@@ -113,12 +120,12 @@ class _Once:
             yield self._cloud[start : start + _BLOCK]
 
 
-def _sum(cloud: PointCloud, voxel: float) -> np.ndarray:
+def _sum(cloud: PointCloud, grid: VoxelGrid) -> np.ndarray:
     known = np.isfinite(cloud.sigma) & (cloud.sigma > 0)
     usual = float(np.median(cloud.sigma[known])) if known.any() else 1.0
     weight = np.where(known, cloud.sigma, usual).astype(float) ** -2
     rows = np.zeros(len(cloud), _SUMS)
-    rows["key"] = VoxelGrid(cloud.points, voxel).keys
+    rows["key"] = grid.keys
     rows["weight"], rows["information"] = weight, np.where(known, weight, 0.0)
     rows["points"] = cloud.points * weight[:, None]
     rows["normals"] = cloud.normals * weight[:, None]

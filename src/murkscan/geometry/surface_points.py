@@ -60,7 +60,7 @@ class SurfacePoints:
             )
         _require(len(cloud))
         spacing = spacing or _spacing_for(cloud.points, _WANTED)
-        grid = VoxelGrid(cloud.points, spacing)
+        grid = VoxelGrid(cloud.points, spacing, np.round(cloud.points[0]))
         points = grid.sum(cloud.points) / grid.counts[:, None]
         _require(len(points))
         normals = grid.sum(np.nan_to_num(cloud.normals.astype(float)))
@@ -93,7 +93,7 @@ class SurfacePoints:
         spacing = spacing or float(np.sqrt(shape.area / _WANTED))
         count = max(int(shape.area / spacing**2), _FEWEST)
         points, faces = trimesh.sample.sample_surface(shape, 3 * count, seed=0)
-        grid = VoxelGrid(np.asarray(points, float), spacing)
+        grid = VoxelGrid(np.asarray(points, float), spacing, np.round(points[0]))
         first = grid.order[grid.starts]
         normals = np.asarray(shape.face_normals)[faces[first]]
         weights = np.ones(len(first))
@@ -109,7 +109,9 @@ def _spacing_for(points: Points, wanted: int) -> float:
     """Give the distance at which about so many points cover the surface [m]."""
     extent = float(np.linalg.norm(np.ptp(points, axis=0)))
     coarse = max(extent / 64, 1e-6)
-    return coarse * float(np.sqrt(max(len(VoxelGrid(points, coarse).starts), 1) / wanted))
+    return coarse * float(
+        np.sqrt(max(len(VoxelGrid(points, coarse, np.round(points[0])).starts), 1) / wanted)
+    )
 
 
 def _level(points: Points, normals: Directions, weights: Scalars) -> Points:

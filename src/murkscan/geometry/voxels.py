@@ -1,13 +1,13 @@
 """Cubes of equal size through space, and which points share one."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ..errors import InputError
-from ..types.arrays import Indices, Points
+from ..types.arrays import Indices, Points, Vector
 
 _MOST = 2**21
 """Cubes along an axis that a number of 63 bits can count."""
@@ -18,28 +18,33 @@ whole length, and noise would sort its points into the cubes of both sides."""
 
 @dataclass(frozen=True, eq=False)
 class VoxelGrid:
-    """Points in the cubes of a grid with a corner at the origin; empty cubes cost nothing."""
+    """Points in the cubes of a grid; empty cubes cost nothing."""
 
     points: Points
     """The points [m]."""
     size: float
     """Edge of a cube [m]."""
+    origin: Vector = field(default_factory=lambda: np.zeros(3))
+    """A corner of a cube [m]. Maps count in millions of metres, which are too many cubes."""
 
     def __post_init__(self) -> None:
         """Refuse cubes without size, and more of them than can be numbered."""
         if not 0 < self.size < np.inf:
             raise InputError(f"The edge of a voxel must be above 0, got {self.size:g} m.")
-        reach = float(np.sqrt(3.0) * np.abs(self.points).max(initial=0.0))
+        reach = float(np.sqrt(3.0) * np.abs(self.points - self.origin).max(initial=0.0))
         if not reach < self.size * (_MOST // 2 - 1):
             raise InputError(
-                f"Points lie as far as {reach:g} m from the origin, which is too far for voxels of "
+                f"Points lie as far as {reach:g} m apart, which is too far for voxels of "
                 f"{self.size:g} m; take larger ones."
             )
 
     @property
     def keys(self) -> Indices:
-        """Give the number of each point's cube: the same for equal places in any cloud."""
-        cells = np.floor(self.points @ (_ASKEW / self.size)).astype(np.int64) + _MOST // 2
+        """Give the number of each point's cube: the same for equal places with an equal origin."""
+        cells = (
+            np.floor((self.points - self.origin) @ (_ASKEW / self.size)).astype(np.int64)
+            + _MOST // 2
+        )
         return (cells[:, 0] * _MOST + cells[:, 1]) * _MOST + cells[:, 2]
 
     @cached_property
