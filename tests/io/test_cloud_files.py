@@ -1,5 +1,6 @@
 """Clouds in every format: what comes back, what others wrote, what is refused."""
 
+import resource
 import struct
 import subprocess
 import sys
@@ -9,7 +10,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from murkscan.errors import FormatError, InputError
+from murkscan.errors import DeviceError, FormatError, InputError
 from murkscan.io.cloud_files import (
     CLOUD_SUFFIXES,
     iterate_cloud_file,
@@ -242,3 +243,21 @@ def test_without_the_extra_the_install_line_is_said(tmp_path):
     )
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert said.stdout.count('pip install "murkscan[formats]"') == 2
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="file-size limits are POSIX")
+@pytest.mark.parametrize("suffix", CLOUD_SUFFIXES)
+def test_a_full_disk_is_one_sentence_and_leaves_what_stood_there(tmp_path, suffix):
+    """A limit on the size of files stands for the disk."""
+    path = tmp_path / f"cloud{suffix}"
+    save(path, some_cloud(100))
+    before = path.read_bytes()
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 17, hard))
+    try:
+        with pytest.raises(DeviceError, match=f"Cannot write .*cloud{suffix}"):
+            save(path, some_cloud(100_000))
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert path.read_bytes() == before
+    assert [file.name for file in tmp_path.iterdir()] == [path.name]

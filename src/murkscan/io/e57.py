@@ -1,7 +1,7 @@
 """Clouds as E57 files, the laser scanners' exchange format. Extra `[formats]`."""
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from uuid import uuid4
@@ -48,23 +48,38 @@ def writing_e57(path: Path) -> Iterator[Callable[[PointCloud], None]]:
     pye57 = import_pye57()
     lib = pye57.libe57
     arrays = {name: np.zeros(BLOCK, _buffer_type(name)) for name in _FIELDS}
-    with replacing(path) as aside:
-        try:
-            with pye57.E57(str(aside), mode="w") as file:
-                points = _add_scan(lib, file)
-                writer = points.writer(_buffers(lib, file.image_file, arrays))
+    with replacing(path) as aside, _open_to_write(pye57, aside) as file:
+        points = _add_scan(lib, file)
+        writer = points.writer(_buffers(lib, file.image_file, arrays))
 
-                def write(cloud: PointCloud) -> None:
-                    for start in range(0, len(cloud), BLOCK):
-                        rows = as_rows(cloud[start : start + BLOCK])
-                        for name, array in arrays.items():
-                            array[: len(rows)] = rows[name]
-                        writer.write(len(rows))
+        def write(cloud: PointCloud) -> None:
+            for start in range(0, len(cloud), BLOCK):
+                rows = as_rows(cloud[start : start + BLOCK])
+                for name, array in arrays.items():
+                    array[: len(rows)] = rows[name]
+                writer.write(len(rows))
 
-                yield write
-                writer.close()
-        except lib.E57Exception as error:
+        yield write
+        writer.close()
+
+
+@contextmanager
+def _open_to_write(pye57: Any, path: Path) -> Iterator[Any]:
+    """Open a file; it is finished only if nothing goes wrong."""
+    file = None
+    try:
+        file = pye57.E57(str(path), mode="w")
+        yield file
+        file.close()
+    except BaseException as error:
+        if file is not None:
+            with suppress(pye57.libe57.E57Exception):
+                file.close()
+            # Otherwise pye57 closes it again when it is collected, and complains on stderr.
+            del file.image_file
+        if isinstance(error, pye57.libe57.E57Exception):
             raise OSError(None, _first_line(error)) from error
+        raise
 
 
 def iterate_e57(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud]:

@@ -45,7 +45,7 @@ def writing_las(path: Path) -> Iterator[Callable[[PointCloud], None]]:
     header.scales = np.full(3, _STEP)
     header.add_extra_dims([laspy.ExtraBytesParams(name, COLUMNS[name]) for name in _EXTRA])
     is_placed = False
-    with replacing(path) as aside:
+    with replacing(path) as aside, _blaming_the_disk():
         writer = laspy.open(aside, mode="w", header=header, do_compress=path.suffix == ".laz")
         with writer:
 
@@ -88,6 +88,17 @@ def iterate_las(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud]:
                         "cut off or damaged."
                     )
                 yield _as_cloud(points)
+
+
+@contextmanager
+def _blaming_the_disk() -> Iterator[None]:
+    """Turn what lazrs says of a failed write into what Python says."""
+    import lazrs
+
+    try:
+        yield
+    except lazrs.LazrsError as error:
+        raise OSError(None, _first_line(error)) from error
 
 
 @contextmanager
