@@ -3,10 +3,13 @@
 import numba
 import numpy as np
 
+_FLAT = 1e-4
+"""Area of a triangle, in squares over its longest side, below which it has no normal."""
+
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
 def least_area(points, is_barred):
-    """Cover a closed line by triangles between its points, of least area altogether.
+    """Cover a closed line by triangles between its points, of least area altogether, none of them a line.
 
     Args:
         points: The line's corners in order [m], n × 3, n at least 3.
@@ -32,7 +35,7 @@ def least_area(points, is_barred):
             for k in range(i + 1, j):
                 whole = cost[i, k] + cost[k, j]
                 if whole < cost[i, j]:
-                    whole += _area(points, i, k, j)
+                    whole += _price(points, i, k, j)
                     if whole < cost[i, j]:
                         cost[i, j] = whole
                         split[i, j] = k
@@ -42,12 +45,16 @@ def least_area(points, is_barred):
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def _area(points, i, j, k):
+def _price(points, i, j, k):
+    """Give a triangle's area, and one of three corners in a line that of a square: it has no side.
+    """
     ux, vx = points[j, 0] - points[i, 0], points[k, 0] - points[i, 0]
     uy, vy = points[j, 1] - points[i, 1], points[k, 1] - points[i, 1]
     uz, vz = points[j, 2] - points[i, 2], points[k, 2] - points[i, 2]
     x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-    return 0.5 * np.sqrt(x * x + y * y + z * z)
+    area = 0.5 * np.sqrt(x * x + y * y + z * z)
+    longest = max(ux * ux + uy * uy + uz * uz, vx * vx + vy * vy + vz * vz)
+    return area if area > _FLAT * longest else longest
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")

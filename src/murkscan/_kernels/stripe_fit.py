@@ -42,11 +42,22 @@ def spread_skirts(
             if lines[j] > lines[i] + reach:
                 break
             share = weights[abs(lines[j] - lines[i])] * heights[j] / heights[i]
-            for k in range(size):
-                x = (middle + k - half - starts[j]) / along
-                if x * x < 16.0:
-                    skirts[i, k] += share * np.exp(-0.5 * x * x)
+            off = middle - half - starts[j]
+            if abs(off + half) < half + 4.0 * along:
+                _add_bell(skirts[i], share, off / along, 1.0 / along)
     return skirts
+
+
+@njit(cache=True, nogil=True)
+def _add_bell(profile: np.ndarray, height: float, first: float, step: float) -> None:
+    """Add height · exp(-x² / 2) at x = first, first + step, …, by products alone."""
+    value = height * np.exp(-0.5 * first * first)
+    ratio = np.exp(-step * (first + 0.5 * step))
+    change = np.exp(-step * step)
+    for k in range(len(profile)):
+        profile[k] += value
+        value *= ratio
+        ratio *= change
 
 
 @njit(cache=True, nogil=True)
@@ -91,10 +102,12 @@ def fit_stripes(
             if misfit < 0.0 or not solve(matrix, step):
                 variance = -1.0
                 break
-            variance = first_variance(matrix)
+            variance = 1.0
             _take_step(p, step)
             if abs(step[0]) < 1e-3 and turn > 1:
                 break
+        if variance > 0.0:
+            variance = first_variance(matrix)
         if variance > 0.0 and abs(p[0]) < 2.0 + shape[0]:
             found[i, 0], found[i, 1], found[i, 2] = middle + p[0], np.sqrt(variance), p[1]
             found[i, 3], found[i, 4], found[i, 5] = np.exp(p[2]), p[3], misfit

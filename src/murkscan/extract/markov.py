@@ -24,8 +24,6 @@ _FAINT, _FULL = 4.5, (2.5, 5.5)
 """Score below which noise hides a ridge, and scores over which its absence comes to count."""
 _PERSISTENT = (0.3, 0.6)
 """Share of sure ridges that the next frame has, too, over which frames come to count at all."""
-_MANY = 24
-"""Scan lines that other frames speak against, from which a stripe may be new as a whole."""
 _END = -8.0
 """Logarithm of the likelihood ratio of a stripe's blur beyond its end."""
 _CLEAR = 4.0
@@ -61,11 +59,7 @@ class Markov:
             ridges: Of one frame.
             said: Logarithm of the likelihood ratio that others give each ridge; none unless given.
         """
-        height = ridges.heights
-        # Local maxima of white noise through the filter, by their height (Rice 1945).
-        noise = 0.55 * height**2 * np.exp(-0.5 * height**2)
-        other = 0.0 if said is None else np.minimum(said, 20.0)
-        ratio = np.where(ridges.exist, np.exp(other) / (noise + 0.25 * self.clutter), 0.0)
+        ratio = self._weigh(ridges, said)
         first = self._chain(ridges, ratio)
         clear = ridges.exist & (ridges.heights > _CLEAR)
         free = clear & ~ridges.are_within(first > 0.5, float(ridges.reach))
@@ -73,6 +67,18 @@ class Markov:
             return first
         second = self._chain(ridges, np.where(free, ratio, 0.0))
         return np.where(go_on_beside(ridges, first, second), second, first)
+
+    def follow_alone(self, ridges: Ridges) -> Posterior:
+        """Give the posterior by what this frame alone says, without second branches."""
+        return self._chain(ridges, self._weigh(ridges, None))
+
+    def _weigh(self, ridges: Ridges, said: Evidence | None) -> Evidence:
+        """Give the likelihood ratio of each ridge against noise and clutter."""
+        height = ridges.heights
+        # Local maxima of white noise through the filter, by their height (Rice 1945).
+        noise = 0.55 * height**2 * np.exp(-0.5 * height**2)
+        other = 0.0 if said is None else np.minimum(said, 20.0)
+        return np.where(ridges.exist, np.exp(other) / (noise + 0.25 * self.clutter), 0.0)
 
     def _chain(self, ridges: Ridges, ratio: Evidence) -> Posterior:
         length = len(ridges.lines.levels)
@@ -113,10 +119,10 @@ def _persistence(near: Mapping[int, Ridges]) -> float:
 
 def _spare_long(ridges: Ridges, said: Evidence, markov: Markov) -> None:
     """Let a surface that is new as a whole be: a long stripe needs no other frame."""
-    against = (said < -3.0) & (ridges.heights > 6.0) & ridges.exist
-    if against.any(axis=1).sum() <= _MANY:
+    against = (said[:, 0] < -3.0) & (ridges.heights[:, 0] > 6.0) & ridges.exist[:, 0]
+    if not find_runs(against, ridges.positions[:, 0]).any():
         return
-    posterior = markov.follow(ridges)
+    posterior = markov.follow_alone(ridges)
     best, every = np.argmax(posterior, axis=1), np.arange(len(said))
     on = (posterior[every, best] > 0.5) & (ridges.heights[every, best] > 5.0)
     run = np.flatnonzero(find_runs(on, ridges.positions[every, best]))
