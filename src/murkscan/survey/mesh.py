@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from ..errors import MissingResult
 from ..io.mesh_files import check_mesh_suffix, save_mesh
 from ..mesh import AbstractMesher, AbstractPaint, ByDepth, close_holes, decimate
 from ..project import Project
 from ..types.cloud import PointCloud
 from ..types.mesh import Mesh
-from .merged import is_merged
 from .progress import Progress, silent
 from .settings import describe
 
@@ -114,8 +114,13 @@ def _finish(mesh: Mesh, cloud: PointCloud, finish: Finish) -> tuple[Mesh, dict[s
 
 def _towards(paint: AbstractPaint | None, project: Project) -> AbstractPaint | None:
     """Count depth in the mean direction in which the camera looked, where that is known."""
-    if not isinstance(paint, ByDepth) or is_merged(project):
+    if not isinstance(paint, ByDepth):
         return paint
-    attitudes = Rotation.from_quat(project.load_trajectory().quaternions, scalar_first=True)
+    try:
+        trajectory = project.load_trajectory()
+    # A merged cloud has none: its world has the axes of the first scan's camera.
+    except MissingResult:
+        return paint
+    attitudes = Rotation.from_quat(trajectory.quaternions, scalar_first=True)
     x, y, z = (float(part) for part in attitudes.mean().apply(np.array([0.0, 0.0, 1.0])))
     return ByDepth((x, y, z))
