@@ -48,7 +48,7 @@ def model_of_scan(
     """
     kept = cloud[choose_fairly(len(cloud), most)]
     kept = kept[np.argsort(kept.frame, kind="stable")]
-    surface = cluster_vertices(mesh or _no_surface(), most)
+    surface = cluster_vertices(_no_surface() if mesh is None else mesh, most)
     found = KDTree(kept.points).query(surface.vertices)
     apart, nearest = np.flatnonzero(np.asarray(found[0]) > 0), np.asarray(found[1])
     place = nearest.astype(int)

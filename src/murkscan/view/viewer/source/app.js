@@ -10,6 +10,7 @@ import { pointOf } from "./model.js";
 import { buildPanel, describeModel } from "./panel.js";
 import { pathTool, startPlaying } from "./path_tool.js";
 import { showReading, startPointer } from "./pointer.js";
+import { distance } from "./ruler.js";
 import { planeThrough } from "./section.js";
 import { showTool } from "./show_tool.js";
 import { colourTable } from "./unpack.js";
@@ -40,7 +41,7 @@ export class App {
     buildPanel(this, this.tools);
     startKeys(this);
     startPointer(this);
-    this.update({});
+    this.update({ scan: 0 });
     this.lookFrom("isometric");
   }
 
@@ -57,7 +58,9 @@ export class App {
       if (this.state.cut?.axis === "measured") patch.cut = null;
     }
     Object.assign(this.state, patch);
-    if (["scan", "cut", "along"].some((name) => name in patch)) this.findSection();
+    const isIn = (name) => name in patch;
+    if (["scan", "cut", "along"].some(isIn)) this.findSection();
+    if (["scan", "profile", "path"].some(isIn)) this.showTime();
     this.sync();
     this.stage.invalidate();
   }
@@ -65,10 +68,13 @@ export class App {
   findSection() {
     const { cut, along } = this.state;
     this.section = cut ? cutModel(this.model, cut, along) : null;
+    const { places = [], isLines } = this.section ?? {};
+    this.lines.setLine("section", isLines ? places : []);
+    this.lines.setSpots("dots", isLines ? [] : places);
   }
 
   sync() {
-    const { model, layer, state, stage, lines } = this;
+    const { model, layer, state, stage } = this;
     stage.kind = state.kind;
     stage.drawings.forEach((drawing, number) => {
       drawing.group.visible = number === state.scan;
@@ -77,10 +83,6 @@ export class App {
     drawing.colourBy(layer, layer && this.range);
     drawing.cutBy(this.cut);
     drawing.uniforms.now.value = state.profile;
-    const { places = [], isLines } = this.section ?? {};
-    lines.setLine("section", isLines ? places : []);
-    lines.setSpots("dots", isLines ? [] : places);
-    this.syncTime();
     showLegend(layer, layer && this.range, layer && this.colours[layer.map]);
     showReading(this);
     document.getElementById("about").textContent = describeModel(model, this.models.length > 1);
@@ -89,7 +91,7 @@ export class App {
   }
 
   // The newest profile bright, and the camera that sees it.
-  syncTime() {
+  showTime() {
     const { model, lines, state } = this;
     const isPartial = Number.isFinite(state.profile);
     const [start, end] = isPartial ? [model.starts[state.profile], model.starts[state.profile + 1]] : [0, 0];
@@ -129,7 +131,8 @@ export class App {
     const sight = this.model.views.front[2].map((_, axis) =>
       -this.stage.camera.matrixWorld.elements[8 + axis]);
     const along = planeThrough(pointOf(this.model, first), pointOf(this.model, second), sight);
-    this.update({ first: null, along, measures: [...measures, { scan, first, second }] });
+    const found = { scan, first, second, ...distance(this.model, first, second) };
+    this.update({ first: null, along, measures: [...measures, found] });
     if (cut?.axis === "measured") this.cutWith({ axis: "measured" });
   }
 

@@ -32,6 +32,7 @@ export function cutTool(app) {
     setTimeout(() => URL.revokeObjectURL(address), 1000);
   }
 
+  let drawn = null; // redrawn only when the plane has moved
   function sync() {
     const { cut } = app.state;
     setPressed(toggle, cut);
@@ -43,6 +44,8 @@ export function cutTool(app) {
     axis.value = cut.axis;
     slider.value = cut.share * 1000;
     where.textContent = length(app.section.at, 1);
+    if (app.section === drawn) return;
+    drawn = app.section;
     const svg = drawSection(app.section.places, app.section.axes, app.section.isLines, "currentColor");
     drawing.innerHTML = svg ?? "<p class='note'>The plane meets nothing here.</p>";
     save.hidden = !svg;

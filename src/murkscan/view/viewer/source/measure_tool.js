@@ -3,7 +3,6 @@
 import { make, setPressed } from "./dom.js";
 import { pointOf } from "./model.js";
 import { length } from "./numbers.js";
-import { distance } from "./ruler.js";
 
 export function measureTool(app) {
   const toggle = make("button", {
@@ -29,8 +28,7 @@ export function measureTool(app) {
     list.replaceChildren(...mine.map(describe));
   }
 
-  function describe({ first, second }) {
-    const { length: metres, step, off, shared } = distance(app.model, first, second);
+  function describe({ length: metres, step, off, shared }) {
     const parts = ["x", "y", "z"].map((name, k) => `Δ${name}\u00a0${length(step[k])}`).join("  ");
     const item = make("li", {}, make("b", { textContent: length(metres) }), ` ${doubt(off)}`,
       make("small", { textContent: parts }), make("small", {
@@ -60,8 +58,7 @@ export function drawMeasures(app) {
     ...[app.state.first, app.state.snapped].filter((i) => i !== null)
       .map((i) => ring(app.stage.project(pointOf(app.model, i)))),
   ].join("");
-  labels.replaceChildren(...app.measures.map(({ first, second }, k) => {
-    const { length: metres, off } = distance(app.model, first, second);
+  labels.replaceChildren(...app.measures.map(({ length: metres, off }, k) => {
     const [a, b] = ends[k];
     const label = make("span", { textContent: length(metres) + (off === null ? "" : ` ± ${length(off)}`) });
     label.style.translate = `calc(${(a[0] + b[0]) / 2}px - 50%) calc(${(a[1] + b[1]) / 2}px - 140%)`;
