@@ -24,7 +24,6 @@ from murkscan.types.camera import Camera
 from murkscan.types.cloud import PointCloud
 from murkscan.types.frame_times import FrameTimes
 from murkscan.types.laser import Fan, Laser
-from murkscan.types.mesh import Mesh
 from murkscan.types.port import DomePort, FlatPort, Layer
 from murkscan.types.profile import Profile
 from murkscan.types.rig import Rig
@@ -85,13 +84,12 @@ def _cloud(profile, trajectory):
 
 def _summary(lit=range(2, 8), **changes):
     profile, trajectory = _profile(lit), _trajectory(10)
-    mesh = Mesh(np.zeros((5, 3)), np.array([[0, 1, 2], [2, 3, 4]]))
     given = {
         "frames": _times(10),
         "trajectory": trajectory,
         "cloud": _cloud(profile, trajectory),
         "num_outliers": 3,
-        "mesh": mesh,
+        "mesh_size": (5, 2),
         "settings": {"motion": {"choice": "ConstantSpeed", "speed": 0.1, "along": None}},
         "versions": {"murkscan": "0.1.0"},
         "durations": {"extract": 1.25},
@@ -104,7 +102,7 @@ def _summary(lit=range(2, 8), **changes):
 
 
 def _dark_summary():
-    return _summary([], cloud=None, mesh=None, num_outliers=0, pictures=[])
+    return _summary([], cloud=None, mesh_size=(0, 0), num_outliers=0, pictures=[])
 
 
 def _text(page):
@@ -247,16 +245,28 @@ def test_a_recording_without_a_stripe_is_said_to_have_none():
 
 
 def test_a_recording_of_one_frame_has_a_report():
-    summary = _summary([0], frames=_times(1), cloud=None, mesh=None)
+    summary = _summary([0], frames=_times(1), cloud=None, mesh_size=(0, 0))
     assert "found in 1 of 1 frames" in _text(as_html(summary))
 
 
 def test_a_hostile_name_stays_text():
     hostile = "<script>alert(1)</script>"
-    recorded = Recorded(hostile, (40, 30), skips=[(0, 1, hostile)])
-    page = as_html(_summary(recorded=recorded, settings={hostile: hostile}))
+    recorded = Recorded(
+        hostile,
+        (40, 30),
+        skips=[(0, 1, hostile)],
+        remarks=[hostile],
+        path=hostile,
+        rig_file=hostile,
+        calibration={hostile: {"date": hostile, "verdict": hostile}},
+        commands=[hostile],
+    )
+    pictures = [Shown(f"../view/{hostile}.png", hostile, is_frame=True)]
+    page = as_html(_summary(recorded=recorded, settings={hostile: hostile}, pictures=pictures))
     assert "<script" not in page
-    assert _text(page).count(hostile) == 5
+    # Title, subtitle, remark, skip, path, rig's file, a step's name and verdict, the command, a
+    # setting and its value, a caption; and the step's name in the sentence above its table.
+    assert _text(page).count(hostile) >= 12
 
 
 def test_rigs_under_water_are_described():

@@ -5,6 +5,7 @@ from pathlib import Path
 from .choices import ExtractorName, make_extractor
 from .options import RecordingFlags, Settings
 from .progress import progress_bars
+from .typed import WORDS
 
 
 def extract(
@@ -42,7 +43,15 @@ def extract(
     of_recording = load_rig(rig)
     pictures = reading.open(recording, of_recording)
     finder = make_extractor(extractor, settings)
-    project = begin_scan(out, pictures, of_recording, laser=laser, settings={"extractor": finder})
+    project = begin_scan(
+        out,
+        pictures,
+        of_recording,
+        laser=laser,
+        settings={"extractor": finder},
+        rig_file=rig,
+        command=WORDS.get(),
+    )
     with progress_bars() as progress:
         result = extract_recording(
             project, pictures, of_recording, finder, laser=laser, progress=progress

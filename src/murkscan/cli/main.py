@@ -8,6 +8,7 @@ from importlib.metadata import version
 from cyclopts import App, CycloptsError
 
 from ..errors import MurkscanError
+from .typed import WORDS
 
 _COMMANDS = {
     "demo": "Scan the built-in sample and say how far the model is from the truth.",
@@ -53,6 +54,7 @@ def main() -> None:
 
 def run(arguments: list[str]) -> int:
     """Run one command and give its exit status."""
+    WORDS.set(tuple(arguments))
     try:
         app(
             arguments,

@@ -5,18 +5,22 @@ from pathlib import Path
 from .progress import progress_bars
 
 
-def report(out: Path) -> None:
-    """Write a page on how the scan went: settings, counts, signal, spacing, pictures.
+def report(out: Path, *, spacing_mm: float | None = None) -> None:
+    """Write a page on how the scan went: coverage, spacing, signal, uncertainty, settings.
 
     Parameters
     ----------
     out
         Folder of the scan, with all stages up to view finished.
+    spacing_mm
+        Wanted spacing of the points, by which gaps and the speed are judged; that along the stripe
+        unless given.
     """
     from ..project import Project
     from ..survey.report import write_report
     from .summary import print_result
 
     with progress_bars() as progress:
-        write_report(Project(out), progress=progress)
+        spacing = None if spacing_mm is None else spacing_mm / 1e3
+        write_report(Project(out), spacing=spacing, progress=progress)
     print_result("report", {}, out / "report" / "index.html")

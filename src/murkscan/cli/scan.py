@@ -15,6 +15,7 @@ from .choices import (
 )
 from .options import MotionFlags, RecordingFlags, Settings
 from .progress import progress_bars
+from .typed import WORDS
 
 
 def scan(
@@ -72,6 +73,8 @@ def scan(
             mesher=make_mesher(mesher, ()),
             laser=laser,
             frames=frames,
+            rig_file=rig,
+            command=WORDS.get(),
             progress=progress,
         )
     print_summary(project)

@@ -2,6 +2,7 @@
 
 from .content import Block as Block
 from .content import Cell as Cell
+from .content import Code as Code
 from .content import Facts as Facts
 from .content import Figure as Figure
 from .content import Gallery as Gallery

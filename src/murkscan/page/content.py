@@ -47,6 +47,8 @@ class Figure:
     kind: ClassVar[str] = "figure"
     svg: str
     caption: str
+    is_wide: bool = False
+    """Whether it takes the page's whole width."""
 
 
 @final
@@ -69,7 +71,16 @@ class Gallery:
     is_first_large: bool = False
 
 
-Block = Note | Facts | Table | Figure | Gallery
+@final
+@dataclass(frozen=True)
+class Code:
+    """Lines to be typed as they are."""
+
+    kind: ClassVar[str] = "code"
+    lines: Sequence[str]
+
+
+Block = Note | Facts | Table | Figure | Gallery | Code
 
 
 @final

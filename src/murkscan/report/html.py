@@ -1,7 +1,19 @@
 """The page that tells how a scan went."""
 
+from collections.abc import Sequence
+
 from ..page import Block, Facts, Gallery, Note, Picture, Section, Table, format_cell, render_page
 from .charts import depth_chart, points_chart, signal_chart
+from .distribution_charts import sigma_distribution, signal_distribution
+from .recorded import Shown
+from .sections import (
+    belief_rows,
+    calibration_blocks,
+    coverage_blocks,
+    repeat_blocks,
+    scanned_rows,
+    speed_blocks,
+)
 from .spread import Spread
 from .summary import ScanSummary
 from .trust import AT_95, Trust
@@ -15,20 +27,37 @@ _UNITS = "Lengths in metres, times in seconds, angles in radians, pictures in pi
 
 def as_html(summary: ScanSummary) -> str:
     """Make report/index.html."""
-    sections = [Section("", _headline(summary))]
-    if summary.pictures:
-        pictures = [Picture(shown.path, shown.caption) for shown in summary.pictures]
-        sections.append(Section("Pictures", [Gallery(pictures, is_first_large=True)]))
+    sections = [
+        Section("", _headline(summary)),
+        Section("What was scanned", [Table(scanned_rows(summary))]),
+    ]
+    views = [shown for shown in summary.pictures if not shown.is_frame]
+    if views:
+        sections.append(Section("Pictures", [_gallery(views, is_first_large=True)]))
+    if summary.coverage is not None:
+        sections.append(Section("Coverage", coverage_blocks(summary.coverage)))
+    if summary.speed is not None:
+        sections.append(Section("Speed and spacing", speed_blocks(summary.speed, summary)))
     if summary.num_points:
         sections += [
+            Section("Signal and uncertainty", _distributions(summary)),
             Section("Over time", _charts(summary)),
-            Section("Numbers", [_spreads(summary)]),
         ]
     if summary.trust is not None:
-        sections.append(Section("Uncertainty", _uncertainty(summary.trust)))
+        sections.append(Section("Uncertainty at 68 and 95 %", _uncertainty(summary.trust)))
+    sections.append(Section("Calibration", calibration_blocks(summary)))
     if summary.recorded.skips:
         sections.append(Section("Skipped frames", _skips(summary)))
-    sections += [
+    frames = [shown for shown in summary.pictures if shown.is_frame]
+    if frames:
+        sections.append(Section("Frames", [_gallery(frames)]))
+    return render_page("Scan report", sections + _record(summary), subtitle=summary.recorded.name)
+
+
+def _record(summary: ScanSummary) -> list[Section]:
+    """Give all that is needed to do the scan again."""
+    sections = [
+        Section("To do it again", repeat_blocks(summary.recorded)),
         Section("Rig", [Table(rig_rows(summary.rig))]),
         Section("Settings", [Note(_UNITS), Table(list(setting_rows(summary.settings)))]),
         Section("Versions", [Table(list(summary.versions.items()))]),
@@ -36,7 +65,11 @@ def as_html(summary: ScanSummary) -> str:
     if summary.durations:
         times = [(name, f"{seconds:.1f} s") for name, seconds in summary.durations.items()]
         sections.append(Section("Time taken", [Table(times)]))
-    return render_page("Scan report", sections, subtitle=summary.recorded.name)
+    return sections
+
+
+def _gallery(pictures: Sequence[Shown], *, is_first_large: bool = False) -> Gallery:
+    return Gallery([Picture(shown.path, shown.caption) for shown in pictures], is_first_large)
 
 
 def _headline(summary: ScanSummary) -> list[Block]:
@@ -46,17 +79,23 @@ def _headline(summary: ScanSummary) -> list[Block]:
         (format_cell(model.faces), "triangles"),
         (format_cell(summary.num_frames), f"frames read, {width} × {height} px"),
         (format_cell(summary.num_empty), "frames without a stripe"),
-        (format_cell(summary.recorded.num_skipped), "frames skipped"),
-        (format_cell(model.outliers), "outliers taken out"),
     ]
+    if summary.recorded.num_skipped:
+        facts.append((format_cell(summary.recorded.num_skipped), "frames skipped"))
+    if model.outliers:
+        facts.append((format_cell(model.outliers), "outliers taken out"))
     if summary.num_points:
         facts.append((describe_range(summary.depth), "depth range"))
     if model.size is not None:
         size = " × ".join(f"{1e3 * edge:.0f}" for edge in model.size)
         facts.append((size, "mm along x, y and z"))
+    if summary.coverage is not None:
+        share = summary.coverage.covered / summary.coverage.mapped
+        facts.append((f"{100 * share:.1f} %", "of the surface between the profiles covered"))
     if (water := summary.recorded.attenuation) is not None:
-        beam = f"per metre: attenuation of the water, from its glow, between {water.low:.2g} and"
-        facts.append((f"{water.effective:.2g}", f"{beam} {water.high:.2g}"))
+        between = f"between {water.low:.2g} and {water.high:.2g}"
+        told = f"per metre: attenuation of the water, by its glow, {between}"
+        facts.append((f"{water.effective:.2g}", told))
     odd = [Note(remark, "warning") for remark in summary.recorded.remarks]
     return [*_verdict(summary), *odd, Facts(facts)]
 
@@ -93,6 +132,18 @@ def _charts(summary: ScanSummary) -> list[Block]:
         draw(summary.timeline, time_label=label)
         for draw in (signal_chart, points_chart, depth_chart)
     ]
+
+
+def _distributions(summary: ScanSummary) -> list[Block]:
+    """Show how the numbers of all points are spread."""
+    blocks: list[Block] = [_spreads(summary)]
+    blocks += [signal_distribution(summary.signals), sigma_distribution(summary.sigmas)]
+    if summary.belief.is_told:
+        head = ("probability that the point is the surface", "points", "share [%]")
+        blocks.append(Table(belief_rows(summary.belief), head=head))
+    else:
+        blocks.append(Note("The extractor gives no probability of a point: all count as sure."))
+    return blocks
 
 
 def _spreads(summary: ScanSummary) -> Table:

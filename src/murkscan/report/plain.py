@@ -1,11 +1,12 @@
 """The numbers of a report as plain values, as report.json has them."""
 
-import math
+from datetime import datetime
 from typing import Any
 
 import numpy as np
 
-from .spread import Spread
+from .plain_numbers import as_list, as_plain, round_off
+from .plain_verdicts import as_plain_verdicts
 from .summary import ScanSummary
 from .timeline import Timeline
 from .trust import AT_95, Trust
@@ -19,19 +20,20 @@ def as_json(summary: ScanSummary) -> dict[str, Any]:
         "format": 1,
         **_counts(summary),
         "mesh": {"vertices": model.vertices, "faces": model.faces},
-        "size_mm": None if model.size is None else [_round(1e3 * edge) for edge in model.size],
-        "signal_grey_levels": _as_plain(summary.signal, 1.0),
-        "depth_mm": _as_plain(summary.depth, 1e3),
-        "sigma_mm": _as_plain(summary.sigma, 1e3),
+        "size_mm": None if model.size is None else [round_off(1e3 * edge) for edge in model.size],
+        "signal_grey_levels": as_plain(summary.signal, 1.0),
+        "depth_mm": as_plain(summary.depth, 1e3),
+        "sigma_mm": as_plain(summary.sigma, 1e3),
         "uncertainty_mm": None if summary.trust is None else _as_uncertainty(summary.trust),
-        "spacing_along_stripe_mm": _as_plain(summary.along, 1e3),
-        "spacing_along_motion_mm": _as_plain(summary.across, 1e3),
+        "spacing_along_stripe_mm": as_plain(summary.along, 1e3),
+        "spacing_along_motion_mm": as_plain(summary.across, 1e3),
         "rig": dict(rig_rows(summary.rig)),
         "laser": summary.laser,
         "settings": dict(summary.settings),
         "versions": dict(summary.versions),
-        "durations_s": {name: _round(time) for name, time in summary.durations.items()},
+        "durations_s": {name: round_off(time) for name, time in summary.durations.items()},
         "pictures": [{"path": p.path, "caption": p.caption} for p in summary.pictures],
+        **as_plain_verdicts(summary),
         "timeline": _as_columns(summary.timeline, is_timed=summary.recorded.is_timed),
     }
 
@@ -46,13 +48,18 @@ def _counts(summary: ScanSummary) -> dict[str, Any]:
             "fields_per_picture": recorded.fields_per_picture,
             "is_timed": recorded.is_timed,
             "remarks": list(recorded.remarks),
+            "path": recorded.path,
+            "began": _moment(recorded.began),
+            "files_written": _moment(recorded.written),
+            "scanned": _moment(recorded.scanned),
+            "duration_s" if recorded.is_timed else "pictures": round_off(summary.duration),
         },
         "attenuation_per_m": None
         if (water := recorded.attenuation) is None
         else {
-            "effective": _round(water.effective),
-            "low": _round(water.low),
-            "high": _round(water.high),
+            "effective": round_off(water.effective),
+            "low": round_off(water.low),
+            "high": round_off(water.high),
         },
         "frames": {
             "read": summary.num_frames,
@@ -73,25 +80,12 @@ def _counts(summary: ScanSummary) -> dict[str, Any]:
 
 def _as_columns(timeline: Timeline, *, is_timed: bool) -> dict[str, Any]:
     return {
-        "time_s" if is_timed else "picture": _as_list(timeline.time),
+        "time_s" if is_timed else "picture": as_list(timeline.time),
         "frames": timeline.frames.tolist(),
         "frames_without_stripe": timeline.empty.tolist(),
-        "points_per_frame": _as_list(timeline.points),
+        "points_per_frame": as_list(timeline.points),
         **_as_lists("signal_grey_levels", timeline.signal, 1.0),
         **_as_lists("depth_mm", timeline.depth, 1e3),
-    }
-
-
-def _as_plain(spread: Spread, scale: float) -> dict[str, float | None]:
-    return {
-        name: None if value is None else _round(scale * value)
-        for name, value in (
-            ("smallest", spread.smallest),
-            ("percent_5", spread.low),
-            ("median", spread.median),
-            ("percent_95", spread.high),
-            ("largest", spread.largest),
-        )
     }
 
 
@@ -99,7 +93,7 @@ def _as_uncertainty(trust: Trust) -> dict[str, Any]:
     """Give the spread over the points of each part, at 68 % (1 σ) and at 95 %."""
     parts = {"independent": trust.independent, "common": trust.common, "total": trust.total}
     return {
-        f"{name}_{level}_percent": None if part is None else _as_plain(part, scale)
+        f"{name}_{level}_percent": None if part is None else as_plain(part, scale)
         for name, part in parts.items()
         for level, scale in ((68, 1e3), (95, 1e3 * AT_95))
     }
@@ -108,13 +102,8 @@ def _as_uncertainty(trust: Trust) -> dict[str, Any]:
 def _as_lists(name: str, values: np.ndarray, scale: float) -> dict[str, list[float | None]]:
     shares = ("percent_5", "median", "percent_95")
     columns = zip(shares, values.T, strict=True)
-    return {f"{name}_{share}": _as_list(scale * column) for share, column in columns}
+    return {f"{name}_{share}": as_list(scale * column) for share, column in columns}
 
 
-def _as_list(values: np.ndarray) -> list[float | None]:
-    return [_round(value) if math.isfinite(value) else None for value in values.tolist()]
-
-
-def _round(value: float) -> float:
-    """Keep seven digits: more than any of these numbers means."""
-    return float(f"{value:.7g}")
+def _moment(moment: datetime | None) -> str | None:
+    return None if moment is None else moment.isoformat()

@@ -54,16 +54,24 @@ def spacing_across(profile: Profile, trajectory: Trajectory, axis: Axis) -> Scal
     return _steps(points[order], is_next)
 
 
-def _one_per_line(profile: Profile, axis: Axis) -> tuple[np.ndarray, Indices, Indices]:
-    """Give points, frames and scan lines, with the strongest point of each scan line alone."""
-    column = 0 if axis == "y" else 1
-    line = np.rint(profile.pixels[:, column]).astype(np.int64)
+def pick_strongest(profile: Profile, axis: Axis) -> Indices:
+    """Pick the strongest point of each frame's scan lines, in order of frames and lines."""
+    line = _scan_line(profile, axis)
     frame = profile.frame.astype(np.int64)
     order = np.lexsort((-profile.signal, line, frame))
     is_first = np.ones(len(order), bool)
     is_first[1:] = (np.diff(frame[order]) != 0) | (np.diff(line[order]) != 0)
-    kept = order[is_first]
-    return profile.points[kept], frame[kept], line[kept]
+    return order[is_first]
+
+
+def _one_per_line(profile: Profile, axis: Axis) -> tuple[np.ndarray, Indices, Indices]:
+    """Give points, frames and scan lines, with the strongest point of each scan line alone."""
+    kept = profile[pick_strongest(profile, axis)]
+    return kept.points, kept.frame.astype(np.int64), _scan_line(kept, axis)
+
+
+def _scan_line(profile: Profile, axis: Axis) -> Indices:
+    return np.rint(profile.pixels[:, 0 if axis == "y" else 1]).astype(np.int64)
 
 
 def _steps(points: np.ndarray, is_next: np.ndarray) -> Scalars:

@@ -1,74 +1,28 @@
 """All numbers of a report, in metres and seconds."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from ..types.background import Attenuation
 from ..types.cloud import PointCloud
 from ..types.frame_times import FrameTimes
-from ..types.laser import Axis
-from ..types.mesh import Mesh
 from ..types.profile import Profile
 from ..types.rig import Rig
 from ..types.trajectory import Trajectory
-from .spacing import spacing_across, spacing_along
+from .belief import Belief
+from .calibrated import CalibrationStep, read_steps
+from .coverage import Coverage, map_coverage
+from .directions import SurfaceDirections
+from .gathering import gather, measure_cloud
+from .histogram import Histogram
+from .recorded import Model, Recorded, Shown
+from .speed import Speed, judge_speed
 from .spread import Spread
-from .timeline import FrameStatistics, Timeline, frame_statistics, make_timeline
-from .trust import Trust, judge_trust
-
-_KEPT = 50_000
-"""Numbers of each part of a scan that a spread is taken over, evenly picked."""
-
-
-@dataclass(frozen=True)
-class Recorded:
-    """What was scanned."""
-
-    name: str
-    """The recording's file or folder."""
-    size: tuple[int, int]
-    """Width and height of the full frame [px]."""
-    fields_per_picture: int = 1
-    """2 where the recording is interlaced."""
-    is_timed: bool = True
-    """Whether times are real; otherwise they count pictures."""
-    skips: Sequence[tuple[int, int, str]] = ()
-    """What could not be read: index of the first frame, how many frames, and why."""
-    remarks: Sequence[str] = ()
-    """What is odd about the recording, with its cure."""
-    attenuation: Attenuation | None = None
-    """How murky the water was, where the glow told."""
-
-    @property
-    def num_skipped(self) -> int:
-        """Frames that could not be read."""
-        return sum(count for _, count, _ in self.skips)
-
-
-@dataclass(frozen=True)
-class Shown:
-    """A picture that the report shows."""
-
-    path: str
-    """Relative to the report's page, with forward slashes."""
-    caption: str
-
-
-@dataclass(frozen=True)
-class Model:
-    """What became of the points."""
-
-    points: int
-    """Points of the cloud."""
-    outliers: int
-    """Points that were taken out as outliers."""
-    vertices: int
-    faces: int
-    size: tuple[float, float, float] | None
-    """Extent of the cloud along the world's x, y and z [m]; None without points."""
+from .swath_layout import SwathLayout
+from .timeline import Timeline, make_timeline
+from .trust import Trust
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +56,19 @@ class ScanSummary:
     model: Model
     trust: Trust | None
     """How far to trust the cloud's points; None without a cloud."""
+    duration: float
+    """From the first frame to the last [s]; in pictures where the recording has no times."""
+    signals: Histogram
+    sigmas: Histogram
+    """How signal [grey levels] and sigma [m] are spread over the points."""
+    belief: Belief
+    """How sure the extractor was of the points."""
+    speed: Speed | None
+    """None where there is no motion to judge."""
+    steps: Sequence[CalibrationStep]
+    """What the rig's file says of its calibration."""
+    coverage: Coverage | None = None
+    """Which parts of the surface the scan has; see `with_coverage`."""
 
     @property
     def num_frames(self) -> int:
@@ -122,15 +89,16 @@ def summarise(
     frames: FrameTimes,
     laser: int = 0,
     trajectory: Trajectory | None = None,
-    cloud: PointCloud | None = None,
+    cloud: PointCloud | Iterable[PointCloud] | None = None,
     num_outliers: int = 0,
-    mesh: Mesh | None = None,
+    mesh_size: tuple[int, int] = (0, 0),
+    wanted: float | None = None,
     settings: Mapping[str, Any],
     versions: Mapping[str, str],
     durations: Mapping[str, float] | None = None,
     pictures: Sequence[Shown] = (),
 ) -> ScanSummary:
-    """Compute all numbers of a report.
+    """Compute all numbers of a report but those of `with_coverage`.
 
     Args:
         recorded: What was scanned.
@@ -139,15 +107,19 @@ def summarise(
         frames: The frames that were read.
         laser: Number of the laser whose stripe was followed.
         trajectory: world_from_camera; without it nothing is said about spacing along the motion.
-        cloud: The points in the world frame.
+        cloud: The points in the world frame, all at once or in blocks.
         num_outliers: Points that were taken out of the cloud.
-        mesh: The surface.
+        mesh_size: Vertices and triangles of the surface.
+        wanted: Wanted spacing of the points [m]; that along the stripe unless given.
         settings: Every setting, as plain values; may be nested.
         versions: Version of each program.
         durations: Time that each stage took [s].
         pictures: What to show, the best first.
     """
-    parts, spreads = _gather(profiles, rig.lasers[laser].axis, trajectory)
+    gathered = gather(profiles, rig.lasers[laser].axis, trajectory)
+    spreads = {name: Spread.from_values(values) for name, values in gathered.values.items()}
+    model, trust = measure_cloud(cloud, rig, num_outliers, mesh_size)
+    needed = wanted if wanted is not None else spreads["along"].median
     return ScanSummary(
         recorded=recorded,
         rig=rig,
@@ -156,45 +128,49 @@ def summarise(
         versions=versions,
         durations=durations or {},
         pictures=pictures,
-        timeline=make_timeline(frames, parts),
-        num_points=int(sum(part.points.sum() for part in parts)),
-        model=_measure(cloud, num_outliers, mesh),
-        trust=None if cloud is None or len(cloud) == 0 else judge_trust(cloud, rig),
+        timeline=make_timeline(frames, gathered.parts),
+        num_points=int(sum(part.points.sum() for part in gathered.parts)),
+        model=model,
+        trust=trust,
+        duration=float(np.ptp(frames.time)) if len(frames) else 0.0,
+        signals=Histogram.from_values(gathered.values["signal"]),
+        sigmas=Histogram.from_ratios(gathered.values["sigma"]),
+        belief=gathered.belief,
+        speed=None
+        if trajectory is None
+        else judge_speed(frames, trajectory, is_timed=recorded.is_timed, wanted=needed),
+        steps=read_steps(recorded.calibration or {}, recorded=recorded.date),
         **spreads,
     )
 
 
-def _gather(
-    profiles: Iterable[Profile], axis: Axis, trajectory: Trajectory | None
-) -> tuple[list[FrameStatistics], dict[str, Spread]]:
-    """Look at each part once: give the statistics of its frames, and the spreads over all parts."""
-    parts: list[FrameStatistics] = []
-    names = ("signal", "depth", "sigma", "along", "across")
-    kept: dict[str, list[np.ndarray]] = {name: [] for name in names}
-    for profile in profiles:
-        parts.append(frame_statistics(profile))
-        kept["signal"].append(_thin(profile.signal))
-        kept["depth"].append(_thin(profile.points[:, 2]))
-        kept["sigma"].append(_thin(profile.sigma))
-        kept["along"].append(_thin(spacing_along(profile, axis)))
-        if trajectory is not None:
-            kept["across"].append(_thin(spacing_across(profile, trajectory, axis)))
-    return parts, {name: Spread.from_values(_join(values)) for name, values in kept.items()}
+def with_coverage(
+    summary: ScanSummary,
+    profiles: Iterable[Profile],
+    *,
+    frames: FrameTimes,
+    trajectory: Trajectory,
+) -> ScanSummary:
+    """Add the map of what the scan has and misses, for which the spacing has to be known first.
 
-
-def _measure(cloud: PointCloud | None, num_outliers: int, mesh: Mesh | None) -> Model:
-    num_points = 0 if cloud is None else len(cloud)
-    size = None
-    if cloud is not None and num_points:
-        x, y, z = np.ptp(cloud.points, axis=0).tolist()
-        size = (x, y, z)
-    vertices, faces = (0, 0) if mesh is None else (len(mesh.vertices), len(mesh.faces))
-    return Model(num_points, num_outliers, vertices, faces, size)
-
-
-def _thin(values: np.ndarray) -> np.ndarray:
-    return values[:: max(1, -(-len(values) // _KEPT))].astype(np.float64)
-
-
-def _join(parts: list[np.ndarray]) -> np.ndarray:
-    return np.concatenate([np.zeros(0), *parts])
+    Args:
+        summary: All else that is known of the scan.
+        profiles: The points once more, in parts of whole frames in order.
+        frames: The frames that were read.
+        trajectory: world_from_camera.
+    """
+    wanted = summary.speed and summary.speed.wanted
+    if not wanted or not summary.num_points:
+        return summary
+    axis = summary.rig.lasers[summary.laser].axis
+    layout = SwathLayout(
+        frames,
+        trajectory,
+        axis,
+        summary.recorded.size,
+        summary.recorded.fields_per_picture,
+        SurfaceDirections.from_trajectory(trajectory, axis),
+    )
+    spacing = max(summary.along.median or 0.0, summary.across.median or 0.0)
+    coverage = map_coverage(profiles, layout, wanted=wanted, spacing=spacing)
+    return replace(summary, coverage=coverage)

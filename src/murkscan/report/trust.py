@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..types.cloud import PointCloud
+from ..types.arrays import Scalars
 from ..types.rig import Rig
 from .spread import Spread
 
@@ -25,8 +25,14 @@ class Trust:
     """Both together."""
 
 
-def judge_trust(cloud: PointCloud, rig: Rig) -> Trust:
-    """Give the standard deviations of a cloud's points."""
-    total = np.hypot(cloud.sigma, cloud.sigma_common)
-    common = Spread.from_values(cloud.sigma_common) if rig.covariance.names else None
-    return Trust(Spread.from_values(cloud.sigma), common, Spread.from_values(total))
+def judge_trust(sigma: Scalars, common: Scalars, rig: Rig) -> Trust:
+    """Give the standard deviations of a cloud's points.
+
+    Args:
+        sigma: The independent part of each point [m].
+        common: The part that the points share [m].
+        rig: The rig; one without a covariance knows nothing of that part.
+    """
+    total = np.hypot(sigma, common)
+    stated = Spread.from_values(common) if rig.covariance.names else None
+    return Trust(Spread.from_values(sigma), stated, Spread.from_values(total))

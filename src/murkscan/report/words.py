@@ -10,6 +10,9 @@ from ..types.port import FlatPort, Port
 from ..types.rig import Rig
 from .spread import Spread
 
+_CHOICE = ("choice", "type")
+"""Keys under which a Choice has its name."""
+
 
 def rig_rows(rig: Rig) -> list[tuple[str, str]]:
     """Describe a rig, one part a row: its name, and what it is like in the units of rig.toml."""
@@ -42,9 +45,12 @@ def setting_rows(settings: Mapping[str, Any], parent: str = "") -> Iterator[tupl
     for name, value in settings.items():
         full = f"{parent} · {name}" if parent else str(name)
         if isinstance(value, Mapping):
-            if "choice" in value:
-                yield full, str(value["choice"])
-            yield from setting_rows({k: v for k, v in value.items() if k != "choice"}, full)
+            inside = {key: kept for key, kept in value.items() if key not in _CHOICE}
+            if choice := [str(value[key]) for key in _CHOICE if key in value]:
+                yield full, choice[0]
+            yield from setting_rows(inside, full)
+        elif isinstance(value, list | tuple) and any(isinstance(item, Mapping) for item in value):
+            yield from setting_rows({str(n): item for n, item in enumerate(value, start=1)}, full)
         else:
             yield full, _describe_value(value)
 

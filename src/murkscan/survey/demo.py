@@ -104,10 +104,20 @@ def _scan(
     out: Path, folder: str, extractor: AbstractExtractor, name: str, progress: Progress
 ) -> Compared:
     """Scan the recording in one way, and hold the cloud against the true hull."""
-    rig = load_rig(out / "recording" / "rig.toml")
+    rig_file = out / "recording" / "rig.toml"
+    rig = load_rig(rig_file)
     recording = open_recording(out / "recording" / "frames", wavelength=rig.wavelength)
     motion = ConstantSpeed(_SPEED, rig.lasers[0].axis)
-    project = scan(recording, rig, motion, out=out / folder, extractor=extractor, progress=progress)
+    project = scan(
+        recording,
+        rig,
+        motion,
+        out=out / folder,
+        extractor=extractor,
+        rig_file=rig_file,
+        command=("demo", str(out)),
+        progress=progress,
+    )
     points = project.load_cloud().points
     compared = points[:: max(len(points) // _COMPARED, 1)]
     truth = load_mesh(out / "recording" / "truth" / "mesh.ply")

@@ -1,32 +1,49 @@
 """Tell how a scan went: one page for people, one file for programs."""
 
+import hashlib
+import json
+import math
 import time
-from pathlib import Path
 from typing import Any
 
+from ..errors import InputError
 from ..project import STAGES, Project
-from ..report import Recorded, ScanSummary, Shown, as_html, as_json, summarise
-from ..types.background import Attenuation
+from ..report import ScanSummary, Shown, as_html, as_json, summarise, with_coverage
 from .progress import Progress, silent
+from .recorded import tell_recording
 from .scan_rig import load_scan_rig
 
 
-def write_report(project: Project, *, progress: Progress = silent) -> dict[str, Any]:
+def write_report(
+    project: Project, *, spacing: float | None = None, progress: Progress = silent
+) -> dict[str, Any]:
     """Run the report stage, from what the other stages have left.
+
+    Args:
+        project: A scan with all stages up to view finished.
+        spacing: Wanted spacing of the points [m]; that along the stripe unless given.
+        progress: Told when it begins and ends.
 
     Returns:
         Counts: frames, skipped, frames_without_stripe, points.
 
     Raises:
+        InputError: The spacing is not above 0.
         MissingResult: The view stage has not been finished.
         DeviceError: The disk is full.
     """
-    stage = project.stage("report", settings={}, inputs={"view": project.finished("view").digest})
+    if spacing is not None and not 0 < spacing < math.inf:
+        raise InputError(f"The wanted spacing must be above 0 mm, got {1e3 * spacing:g} mm.")
+    stage = project.stage(
+        "report",
+        settings={"spacing": spacing},
+        inputs={"view": project.finished("view").digest, "scan": _digest(project.load_scan())},
+    )
     if (result := stage.result()) is not None:
         return result
     since = time.monotonic()
     progress("report", 0, None)
-    summary = _summarise(project)
+    summary = _summarise(project, spacing)
     stage.begin()
     project.save_report(as_json(summary), as_html(summary))
     result = {
@@ -40,39 +57,35 @@ def write_report(project: Project, *, progress: Progress = silent) -> dict[str, 
     return result
 
 
-def _summarise(project: Project) -> ScanSummary:
+def _digest(scan: dict[str, Any]) -> str:
+    """Give a text that changes with what scan.json says, but for when it was said."""
+    told = {name: value for name, value in scan.items() if name != "started"}
+    return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()[:16]
+
+
+def _summarise(project: Project, spacing: float | None) -> ScanSummary:
     scan, extract = project.load_scan(), project.finished("extract")
     stages = {name: project.finished(name) for name in STAGES if name != "report"}
-    has_mesh = stages["mesh"].counts()["faces"] > 0
-    recording = scan["recording"]
-    return summarise(
-        Recorded(
-            name=Path(recording["path"]).name,
-            size=tuple(recording["size"]),
-            fields_per_picture=recording["fields_per_picture"],
-            is_timed=recording["is_timed"],
-            skips=[tuple(skip) for skip in extract.counts()["skips"]],
-            remarks=extract.counts().get("remarks", []),
-            attenuation=_attenuation(extract.counts()),
-        ),
+    frames, trajectory = project.load_frame_times(), project.load_trajectory()
+    mesh = stages["mesh"].counts()
+    summary = summarise(
+        tell_recording(project, scan),
         load_scan_rig(project),
         project.load_profile_parts(),
-        frames=project.load_frame_times(),
+        frames=frames,
         laser=extract.key["settings"]["laser"],
-        trajectory=project.load_trajectory(),
-        cloud=project.load_cloud(),
+        trajectory=trajectory,
+        cloud=project.iterate_cloud(),
         num_outliers=stages["cloud"].counts()["outliers"],
-        mesh=project.load_mesh() if has_mesh else None,
+        mesh_size=(mesh["vertices"], mesh["faces"]),
+        wanted=spacing,
         settings={name: stage.key["settings"] for name, stage in stages.items()},
         versions=scan["versions"],
         durations={name: stage.seconds() for name, stage in stages.items()},
         pictures=_pictures(project),
     )
-
-
-def _attenuation(extracted: dict[str, Any]) -> Attenuation | None:
-    water = extracted.get("attenuation")
-    return water and Attenuation(water["effective_per_m"], *water["between_per_m"])
+    profiles = project.load_profile_parts()
+    return with_coverage(summary, profiles, frames=frames, trajectory=trajectory)
 
 
 def _pictures(project: Project) -> list[Shown]:
@@ -81,10 +94,7 @@ def _pictures(project: Project) -> list[Shown]:
         for name in project.finished("view").counts()["pictures"]
     ]
     found = [
-        Shown(
-            f"../extract/overlay/{file.name}",
-            f"what was found in frame {int(file.stem.split('_')[0])}",
-        )
+        Shown(f"../extract/overlay/{file.name}", _caption(file.stem), is_frame=True)
         for file in project.find_overlays()
     ]
     return views + found

@@ -1,7 +1,7 @@
 """A scan from the recording to the report: the stages in order."""
 
 import platform
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
@@ -20,6 +20,7 @@ from .extract import check_recording, extract_recording
 from .merged import require_recording
 from .mesh import build_mesh
 from .motion import check_times, follow_motion
+from .origin import tell_origin, when_written
 from .progress import Progress, silent
 from .report import write_report
 from .settings import describe
@@ -38,6 +39,8 @@ def scan(
     mesher: AbstractMesher | None = None,
     laser: int = 0,
     frames: bool = False,
+    rig_file: Path | None = None,
+    command: Sequence[str] = (),
     progress: Progress = silent,
 ) -> Project:
     """Turn a recording into a measured 3D model, and say how it went.
@@ -55,6 +58,8 @@ def scan(
         mesher: The way to make a surface; the scan's own grid unless given.
         laser: Number of the laser in the rig whose stripe is followed.
         frames: Whether to write one cloud a frame for more than 500 frames, too.
+        rig_file: The file of the rig, for what the report says of its calibration.
+        command: The words that were typed after `murkscan`, for the report.
         progress: Told how far each stage is.
 
     Returns:
@@ -71,7 +76,15 @@ def scan(
     mesher.check_available()
     check_times(recording.path, motion, is_timed=recording.is_timed)
     settings = {"extractor": extractor, "method": method, "motion": motion, "mesher": mesher}
-    project = begin_scan(out, recording, rig, laser=laser, settings=settings)
+    project = begin_scan(
+        out,
+        recording,
+        rig,
+        laser=laser,
+        settings=settings,
+        rig_file=rig_file,
+        command=command,
+    )
     extract_recording(project, recording, rig, extractor, laser=laser, progress=progress)
     triangulate_stripes(project, rig, method, progress=progress)
     follow_motion(project, motion)
@@ -89,6 +102,8 @@ def begin_scan(
     *,
     laser: int,
     settings: Mapping[str, object],
+    rig_file: Path | None = None,
+    command: Sequence[str] = (),
 ) -> Project:
     """Make a project, or open the one that is there, and write down what it scans with what.
 
@@ -98,6 +113,8 @@ def begin_scan(
         rig: The rig that recorded them.
         laser: Number of the laser whose stripe is followed.
         settings: The Choice of each kind that was made.
+        rig_file: The file of the rig, for what the report says of its calibration.
+        command: The words that were typed after `murkscan`, for the report.
 
     Raises:
         InputError: The folder holds other things, or the recording is not of this rig.
@@ -117,8 +134,10 @@ def begin_scan(
                 "size": list(recording.size),
                 "is_timed": recording.is_timed,
                 "fields_per_picture": recording.fields_per_picture,
+                "written": when_written(recording.path),
             },
             "rig": as_tables(rig),
+            **tell_origin(rig_file, command),
             "settings": {
                 "laser": laser,
                 **{name: describe(choice) for name, choice in settings.items()},

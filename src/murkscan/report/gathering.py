@@ -1,0 +1,80 @@
+"""Numbers of all points, gathered part by part, so that a scan need not fit into memory."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..types.arrays import Scalars
+from ..types.cloud import PointCloud
+from ..types.laser import Axis
+from ..types.profile import Profile
+from ..types.rig import Rig
+from ..types.trajectory import Trajectory
+from .belief import LEVELS, Belief
+from .even_sample import EvenSample
+from .recorded import Model
+from .spacing import spacing_across, spacing_along
+from .timeline import FrameStatistics, frame_statistics
+from .trust import Trust, judge_trust
+
+_COLUMNS = ("signal", "depth", "sigma", "along", "across")
+
+
+@dataclass(frozen=True, eq=False)
+class Gathered:
+    """What all parts of a scan said."""
+
+    parts: list[FrameStatistics]
+    """Statistics of each part's frames."""
+    values: dict[str, Scalars]
+    """Numbers by their name, evenly picked; lengths in metres."""
+    belief: Belief
+
+
+def gather(profiles: Iterable[Profile], axis: Axis, trajectory: Trajectory | None) -> Gathered:
+    """Look at each part once.
+
+    Args:
+        profiles: The points, in parts of whole frames.
+        axis: The camera axis along which the laser sits.
+        trajectory: world_from_camera; without it there are no distances along the motion.
+    """
+    parts: list[FrameStatistics] = []
+    belief = Belief((0,) * (len(LEVELS) + 1), is_told=False)
+    kept = {name: EvenSample() for name in _COLUMNS}
+    for profile in profiles:
+        parts.append(frame_statistics(profile))
+        belief += Belief.from_posterior(profile.posterior)
+        kept["signal"].add(profile.signal)
+        kept["depth"].add(profile.points[:, 2])
+        kept["sigma"].add(profile.sigma)
+        kept["along"].add(spacing_along(profile, axis))
+        if trajectory is not None:
+            kept["across"].add(spacing_across(profile, trajectory, axis))
+    return Gathered(parts, {name: some.values() for name, some in kept.items()}, belief)
+
+
+def measure_cloud(
+    cloud: PointCloud | Iterable[PointCloud] | None,
+    rig: Rig,
+    num_outliers: int,
+    mesh_size: tuple[int, int],
+) -> tuple[Model, Trust | None]:
+    """Tell how large a cloud is and how far to trust its points; None without points."""
+    blocks = [cloud] if isinstance(cloud, PointCloud) else cloud or ()
+    num_points, ends = 0, []
+    sigma, common = EvenSample(), EvenSample()
+    for block in blocks:
+        if not len(block):
+            continue
+        num_points += len(block)
+        ends.append((block.points.min(axis=0), block.points.max(axis=0)))
+        sigma.add(block.sigma)
+        common.add(block.sigma_common)
+    if not num_points:
+        return Model(0, num_outliers, *mesh_size, None), None
+    low, high = np.min([end[0] for end in ends], axis=0), np.max([end[1] for end in ends], axis=0)
+    x, y, z = (high - low).tolist()
+    model = Model(num_points, num_outliers, *mesh_size, (x, y, z))
+    return model, judge_trust(sigma.values(), common.values(), rig)
