@@ -71,17 +71,21 @@ def _of_picture(pooled: dict[str, Any]) -> float:
 
 
 def _what_was_run(results: Results) -> str:
-    """Say of each case which seeds and how many pictures."""
-    kinds: dict[tuple[Any, ...], list[str]] = {}
-    for case in (case for case in CASES if case in results):
-        parts = {part for finder in results[case].values() for part in finder}
-        seeds = tuple(sorted({part.seed for part in parts}))
-        kinds.setdefault((seeds, next(iter(parts)).pictures), []).append(case)
-    told = [
-        f"{', '.join(cases)}: {pictures} pictures, seed {', '.join(map(str, seeds))}"
-        for (seeds, pictures), cases in kinds.items()
-    ]
-    return "Run: " + "; ".join(told) + "."
+    """Say which seeds and how many pictures each finder has seen of each case."""
+    told: dict[str, list[str]] = {}
+    for name in STYLES:
+        kinds: dict[tuple[Any, ...], list[str]] = {}
+        for case in (case for case in CASES if name in results.get(case, {})):
+            parts = results[case][name]
+            seeds = ", ".join(str(seed) for seed in sorted(part.seed for part in parts))
+            kinds.setdefault((next(iter(parts)).pictures, seeds), []).append(case)
+        run = "; ".join(
+            f"{', '.join(cases)}: {pictures} pictures, seed {seeds}"
+            for (pictures, seeds), cases in kinds.items()
+        )
+        if run:
+            told.setdefault(run, []).append(LABELS.get(name, name))
+    return "\n".join(["What was run:", "", *(f"- {', '.join(n)}: {r}." for r, n in told.items())])
 
 
 def _figures(results: Results, pooled: dict[str, Any]) -> list[Figure]:
@@ -137,7 +141,7 @@ def _cell(value: float, name: str) -> str:
         return "–"
     _, unit, most, least = _BARS[name]
     missed = (most is not None and abs(value) > most) or (least is not None and value < least)
-    digits = 3 if unit == "px" else 1 if unit in ("%", "points", "lines") else 2
+    digits = 3 if unit == "px" else 1 if unit in ("points", "lines") else 2
     text = f"{value:.{digits}f}"
     return f"**{text}**" if missed else text
 

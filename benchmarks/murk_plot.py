@@ -34,6 +34,8 @@ _PANELS = (
     ("ratio", "median |error| / bound, where found", 1.0, None),
     ("absolute", "median |error| [px], where found", 1.0, None),
 )
+_APART = 0.3
+"""Attenuations that are nearer to each other than this have one label [1/m]."""
 _BARS = {"recall": 95.0, "precision": 99.0, "ratio": 1.5}
 
 
@@ -94,7 +96,8 @@ def _mark_attenuation(axis: Axes, curves: dict[str, dict[float, dict[str, float]
     """Write c itself on top."""
     waters = sorted({c for curve in curves.values() for c in curve})
     top = axis.secondary_xaxis("top", functions=(lambda x: x / RANGE, lambda c: c * RANGE))
-    top.set_xticks(waters, [f"{c:g}" for c in waters], fontsize=8, color="0.4")
+    apart = [c for c, before in zip(waters, [-1.0, *waters], strict=False) if c - before > _APART]
+    top.set_xticks(apart, [f"{c:g}" for c in apart], fontsize=8, color="0.4")
     top.tick_params(color="0.4", length=2)
     axis.annotate("c [1/m]", (1.0, 1.09), xycoords="axes fraction", ha="right", fontsize=8,
                   color="0.4")  # fmt: skip
