@@ -6,8 +6,8 @@ All of it takes half an hour on two cores, with --peers three quarters. It can b
 share a --cache; --page then makes the page of what is there:
 python benchmarks/murk.py --cases --cache DIR --page
 
-A quick look, at 20 pictures of one rung, which the folder keeps for the next time:
-python benchmarks/murk.py --cases c3 --seeds 10 --pictures 20 --only Murk --cache DIR
+A quick look while tuning, at 20 pictures of one rung, which the folder keeps for the next time:
+python benchmarks/murk.py --cases c3 --seeds 0 --pictures 20 --only Murk --cache DIR
 """
 
 import argparse

@@ -6,7 +6,7 @@ The simulator's hull (albedo 0.03 to 0.11, at 0.77 to 1.05 m before a wall at 1.
 own. PAL is interlaced, so that each picture is two frames, and a frame has every second row: its
 bound is that of the rows it has. Exposure is fixed for each rung so that the brightest 3 % of the
 noise-free stripe, over nine frames, reach 200 grey levels up to c = 3 /m, then 100, 50, 24.
-Finders were tuned on seeds 0 to 2; none of the seeds below was looked at for that.
+Seeds 0 to 2 are for tuning.
 
 - A true centre is *visible* if its `crlb_px`, the bound of its scan line alone, is at most 0.5
   px. From c = 3 /m on that is the hull without the wall, which is why recall may rise there.
