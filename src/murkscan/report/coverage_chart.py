@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from jaxtyping import Float
 
-from ..page import FAINT, INK, Figure, as_svg, new_figure
+from ..page import INK, Figure, as_svg, new_figure
 from .coverage import Coverage
 from .swath import CAUSES
 
@@ -89,7 +89,7 @@ def _add_legend(coverage: Coverage, axes: "Axes") -> None:
         loc="outside lower left",
         ncols=3,
         labelcolor=INK,
-        edgecolor=FAINT,
+        frameon=False,
         handlelength=1.0,
         handleheight=1.0,
     )

@@ -54,9 +54,9 @@ def coverage_blocks(coverage: Coverage) -> list[Block]:
         "as seen from the scanner."
     )
     return [
+        Note(text),
         coverage_chart(coverage),
         Table(rows, head=("", "area [m²]", "share [%]")),
-        Note(text),
     ]
 
 
