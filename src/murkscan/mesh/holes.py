@@ -4,7 +4,7 @@ from collections import defaultdict
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Int
+from jaxtyping import Bool, Int
 from scipy.spatial.distance import pdist
 
 from .._kernels.fill_hole import least_area
@@ -16,6 +16,9 @@ _MOST_SIDES = 1000
 """Sides of a hole that is closed, at most: the time goes with their third power, two seconds for
 these."""
 
+Keys = Int[np.ndarray, "keys"]
+"""Sides by number, the smallest first."""
+SideMask = Bool[np.ndarray, "sides"]
 Sides = Int[np.ndarray, "sides 2"]
 """Sides of triangles as two vertex numbers, from and to."""
 
@@ -47,7 +50,7 @@ def close_holes(mesh: Mesh, *, largest: float) -> ClosedHoles:
     if not largest > 0:
         raise InputError(f"Holes to close must be larger than 0, got {largest:g} m.")
     sides, normals = _open_sides(mesh)
-    taken, patches, num_left = _sorted_keys(mesh.faces), list[Faces](), 0
+    taken, patches, num_left = _Taken(mesh), list[Faces](), 0
     for loop in _find_loops(sides):
         corners = sides[loop, 0]
         if not _is_hole(mesh, corners, normals[loop]):
@@ -56,12 +59,35 @@ def close_holes(mesh: Mesh, *, largest: float) -> ClosedHoles:
         num_left += len(patch) == 0
         if len(patch):
             patches.append(patch)
-            taken = np.union1d(taken, _sorted_keys(patch))
+            taken.add(patch)
     faces = np.concatenate([mesh.faces, *patches])
     before = np.zeros(len(mesh.faces), bool) if mesh.filled is None else mesh.filled
     filled = np.concatenate([before, np.ones(len(faces) - len(before), bool)])
     closed = Mesh(mesh.vertices, faces, filled, mesh.colours)
     return ClosedHoles(closed, len(patches), num_left)
+
+
+class _Taken:
+    """The sides that a surface has, and those that patches have added: none may come again."""
+
+    def __init__(self, mesh: Mesh) -> None:
+        self._keys = _sorted_keys(mesh.faces)
+        self._added: set[int] = set()
+        self._is_touched = np.zeros(len(mesh.vertices), bool)
+
+    def add(self, patch: Faces) -> None:
+        """Count the sides of a patch, too."""
+        self._added.update(_sorted_keys(patch).tolist())
+        self._is_touched[patch] = True
+
+    def has(self, sides: Sides) -> SideMask:
+        """Tell which sides are there already, in either direction."""
+        keys = _keys(sides)
+        slot = np.minimum(np.searchsorted(self._keys, keys), len(self._keys) - 1)
+        found = self._keys[slot] == keys
+        both = np.flatnonzero(self._is_touched[sides].all(axis=1))
+        found[both] |= np.array([key in self._added for key in keys[both].tolist()], bool)
+        return found
 
 
 def _open_sides(mesh: Mesh) -> tuple[Sides, Directions]:
@@ -75,13 +101,13 @@ def _open_sides(mesh: Mesh) -> tuple[Sides, Directions]:
     return sides[is_open], np.repeat(upright, 3, axis=0)[is_open]
 
 
-def _keys(sides: Sides) -> Indices:
+def _keys(sides: Sides) -> Keys:
     """Number the sides so that both directions of one have the same number."""
     return sides.min(axis=1).astype(np.int64) << 32 | sides.max(axis=1)
 
 
-def _sorted_keys(faces: Faces) -> Indices:
-    return np.unique(_keys(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])))
+def _sorted_keys(faces: Faces) -> Keys:
+    return np.sort(_keys(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])))
 
 
 def _find_loops(sides: Sides) -> list[list[int]]:
@@ -114,7 +140,7 @@ def _is_hole(mesh: Mesh, corners: Indices, normals: Directions) -> bool:
     return bool(area @ normals.sum(axis=0) < 0)
 
 
-def _cover(mesh: Mesh, corners: Indices, taken: Indices, largest: float) -> Faces:
+def _cover(mesh: Mesh, corners: Indices, taken: "_Taken", largest: float) -> Faces:
     """Give triangles over a hole, turned as those around it; none where it stays open."""
     none = np.zeros((0, 3), mesh.faces.dtype)
     if not 3 <= len(corners) <= _MOST_SIDES:
@@ -124,9 +150,8 @@ def _cover(mesh: Mesh, corners: Indices, taken: Indices, largest: float) -> Face
     if np.ptp(places, axis=0).max() > largest or pdist(places).max() > largest:
         return none
     first, second = np.triu_indices(len(corners), 2)
-    keys = _keys(np.stack([corners[first], corners[second]], axis=1))
-    slot = np.minimum(np.searchsorted(taken, keys), len(taken) - 1)
+    sides = np.stack([corners[first], corners[second]], axis=1)
     is_barred = np.zeros((len(corners), len(corners)), bool)
-    is_barred[first, second] = taken[slot] == keys
+    is_barred[first, second] = taken.has(sides)
     # The open sides run against the new triangles.
     return corners[least_area(places, is_barred)][:, ::-1].astype(mesh.faces.dtype)
