@@ -69,6 +69,17 @@ def test_points_without_a_normal_stay_and_spoil_no_neighbour():
     assert np.isfinite(mesh.vertices).all()
 
 
+@pytest.mark.parametrize("unknown", [np.nan, np.inf, -1.0])
+def test_normals_and_deviations_that_are_no_numbers_move_nothing(unknown):
+    cloud = scan_cloud(plane, noise=NOISE)
+    cloud.normals[:100] = unknown if unknown != -1.0 else 0.0
+    cloud.sigma[2000:2100] = unknown
+    mesh = GridMesh().mesh(cloud)
+    assert np.isfinite(mesh.vertices).all()
+    for still in (slice(100), slice(2000, 2100)):
+        np.testing.assert_array_equal(mesh.vertices[still], cloud.points[still])
+
+
 def test_smoothing_never_reaches_over_a_depth_jump():
     near, far = GridMesh().mesh(scan_cloud(step, noise=NOISE)).vertices, 0.5
     off = np.minimum(np.abs(near[:, 2] - far), np.abs(near[:, 2] - 0.47))

@@ -46,8 +46,7 @@ def least_area(points, is_barred):
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
 def _price(points, i, j, k):
-    """Give a triangle's area, and one of three corners in a line that of a square: it has no side.
-    """
+    """Give a triangle's area, and one of three corners in a line that of a square: it has no side."""
     ux, vx = points[j, 0] - points[i, 0], points[k, 0] - points[i, 0]
     uy, vy = points[j, 1] - points[i, 1], points[k, 1] - points[i, 1]
     uz, vz = points[j, 2] - points[i, 2], points[k, 2] - points[i, 2]

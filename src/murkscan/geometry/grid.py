@@ -143,7 +143,7 @@ class ScanGrid:
         if self.max_jump is None:
             usual = abs(profiles) * self.usual_across + abs(lines) * self.usual_along
             noise = np.hypot(self.cloud.sigma[ours], self.cloud.sigma[theirs])
-            limit = _STEEPEST * usual + _SIGMAS * np.nan_to_num(noise)
+            limit = _STEEPEST * usual + _SIGMAS * np.nan_to_num(noise, posinf=0.0)
         else:
             limit = np.full(len(ours), self.max_jump)
         return (theirs != NONE) & (self.distance(ours, theirs) <= limit)

@@ -36,8 +36,10 @@ def smooth_points(grid: ScanGrid, along: Indices, across: Indices, *, most: floa
         The points [m]; those without a normal, or whose sigma is 0, stay.
     """
     cloud = grid.cloud
-    normals = cloud.normals.astype(np.float64)
-    sigma = np.nan_to_num(cloud.sigma.astype(np.float64))
+    # Clouds of other programs may hold anything where they know nothing.
+    normals = np.nan_to_num(cloud.normals.astype(np.float64), posinf=0.0, neginf=0.0)
+    known = np.isfinite(cloud.sigma) & (cloud.sigma > 0)
+    sigma = np.where(known, cloud.sigma, 0.0).astype(np.float64)
     limit = most * sigma
     moved = np.zeros(len(cloud))
     for links, reach in ((along, _ALONG), (across, _ACROSS)):
