@@ -78,7 +78,7 @@ of {SAMPLES:,} places, spread over the mesh or over the true stripe, and not loo
 The default finder has joined centres over eight scan lines and two fields to each side already;
 what smoothing gains, it gains over three and four times as many. The times are for one million
 points in grid order, profiles of 1000 of which one in {1 / DROPOUTS:g} is missing, each in one
-thread.
+thread, by the clock of a machine that is shared.
 """
 
 
