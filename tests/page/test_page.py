@@ -8,6 +8,7 @@ import pytest
 
 from murkscan.page import (
     ACCENT,
+    Code,
     Facts,
     Figure,
     Gallery,
@@ -127,13 +128,14 @@ def test_hostile_text_stays_text_everywhere():
     sections = [
         Section(HOSTILE, [Note(HOSTILE), Facts([(HOSTILE, HOSTILE)])]),
         Section("", [Table([(HOSTILE, HOSTILE)]), Table([(HOSTILE,)], head=(HOSTILE,))]),
-        Section("", [Gallery([Picture(HOSTILE, HOSTILE)])]),
+        Section("", [Gallery([Picture(HOSTILE, HOSTILE)]), Code([HOSTILE])]),
         Section("", [Figure(as_svg(figure, name="f", title=HOSTILE), HOSTILE)]),
     ]
     found = Structure(render_page(HOSTILE, sections, subtitle=HOSTILE))
     assert "script" not in found.tags
-    # Title twice, subtitle twice, heading, note, two of facts, two and two of tables, two captions.
-    assert "".join(found.text).count(HOSTILE) == 14
+    # Title twice, subtitle twice, heading, note, two of facts, two and two of tables, two captions,
+    # and a line to be typed.
+    assert "".join(found.text).count(HOSTILE) == 15
 
 
 @pytest.mark.parametrize(

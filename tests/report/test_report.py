@@ -3,6 +3,7 @@
 import json
 import math
 from dataclasses import replace
+from datetime import UTC, datetime
 from html.parser import HTMLParser
 
 import numpy as np
@@ -19,6 +20,7 @@ from murkscan.report import (
     spacing_across,
     spacing_along,
     summarise,
+    with_coverage,
 )
 from murkscan.types.camera import Camera
 from murkscan.types.cloud import PointCloud
@@ -246,7 +248,59 @@ def test_a_recording_without_a_stripe_is_said_to_have_none():
 
 def test_a_recording_of_one_frame_has_a_report():
     summary = _summary([0], frames=_times(1), cloud=None, mesh_size=(0, 0))
+    summary = _covered(summary, [0], 1)
     assert "found in 1 of 1 frames" in _text(as_html(summary))
+    assert as_json(summary)["coverage"] is None
+    assert as_json(summary)["speed"] is None
+
+
+def _covered(summary, lit, num_frames=10):
+    return with_coverage(
+        summary, [_profile(lit)], frames=_times(num_frames), trajectory=_trajectory(num_frames)
+    )
+
+
+def test_a_recording_without_a_stripe_has_no_map():
+    assert as_json(_covered(_dark_summary(), []))["coverage"] is None
+
+
+def test_the_map_and_the_speed_are_the_same_on_the_page_and_in_the_file():
+    summary = _covered(_summary([0, 1, 2, 3, 6, 7, 8, 9], wanted=2 * STEP), range(10))
+    content, page = as_json(summary), as_html(summary)
+    area = content["coverage"]["area_m2"]
+    # Nine steps of 4 mm, twenty scan lines of 1 mm.
+    assert area["all"] == pytest.approx(9 * STEP * 20 * PITCH)
+    assert area["covered"] == pytest.approx(area["all"])
+    assert len(content["coverage"]["map"]["rows_across"]) == len(
+        content["coverage"]["map"]["points"]
+    )
+    assert content["speed"]["highest_speed_mm_s"] == pytest.approx(2e3 * STEP * 25)
+    text = _text(page)
+    assert "highest speed for the wanted spacing 200 mm/s" in text
+    assert "Wanted are points every 8 mm" in text
+    assert "covered 0.00072 100" in text
+    assert "Slow enough: profiles lie 0.5 times the wanted spacing apart" in text
+    assert json.loads(json.dumps(content, allow_nan=False)) == content
+
+
+def test_too_fast_a_motion_is_told_with_its_cure():
+    text = _text(as_html(_summary(wanted=STEP / 2)))
+    assert "profiles lie 2 times as far apart as wanted. Move at 50 mm/s or less" in text
+
+
+def test_a_rig_without_a_record_is_not_called_calibrated():
+    for calibration, words in (({}, "holds no record of a calibration"), (None, "not known here")):
+        recorded = Recorded("dive.mkv", (40, 30), calibration=calibration)
+        assert words in _text(as_html(_summary(recorded=recorded)))
+
+
+def test_an_old_calibration_is_told():
+    step = {"date": "2024-01-01", "verdict": "Good: all of it."}
+    written = datetime(2026, 1, 1, tzinfo=UTC)
+    recorded = Recorded("dive.mkv", (40, 30), calibration={"camera": step}, written=written)
+    text = _text(as_html(_summary(recorded=recorded)))
+    assert "More than a year lies between the recording and the calibration of camera" in text
+    assert "2024-01-01, 731 days before the recording" in text
 
 
 def test_a_hostile_name_stays_text():

@@ -1,6 +1,7 @@
 """What scan.json and the stages say of the recording and of how it was scanned, for the report."""
 
 import shlex
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -8,6 +9,7 @@ from typing import Any
 from ..project import Project
 from ..report import Recorded
 from ..types.background import Attenuation
+from ..types.frame_times import FrameTimes
 
 _SINCE = 1e8
 """A log's time above this counts seconds since 1970; below it, a clock of its own [s]."""
@@ -31,12 +33,12 @@ def tell_recording(project: Project, scan: dict[str, Any]) -> Recorded:
         remarks=counts.get("remarks", []),
         attenuation=_attenuation(counts),
         path=recording["path"],
-        began=_began(project, motion),
+        began=when_began(project.load_frame_times(), motion),
         written=_moment(recording.get("written")),
         scanned=_moment(scan.get("started")),
         rig_file=scan.get("rig_file", ""),
         calibration=scan.get("calibration"),
-        commands=_commands(project, scan, motion),
+        commands=commands_of(str(project.root), scan.get("command", ()), motion),
     )
 
 
@@ -45,30 +47,41 @@ def _attenuation(extracted: dict[str, Any]) -> Attenuation | None:
     return water and Attenuation(water["effective_per_m"], *water["between_per_m"])
 
 
-def _began(project: Project, motion: dict[str, Any]) -> datetime | None:
-    """Give when the first frame was taken, where the log of the poses counts from 1970."""
+def when_began(frames: FrameTimes, motion: dict[str, Any]) -> datetime | None:
+    """Give when the first frame was taken, where the log of the poses counts from 1970.
+
+    Args:
+        frames: The frames that were read.
+        motion: The settings of the motion.
+    """
     start = motion.get("start_time", 0.0) + motion.get("time_offset", 0.0)
-    times = project.load_frame_times().time
-    if not len(times) or not start + times[0] > _SINCE:
+    if not len(frames) or not start + frames.time[0] > _SINCE:
         return None
-    return datetime.fromtimestamp(start + float(times[0]), UTC)
+    try:
+        return datetime.fromtimestamp(start + float(frames.time[0]), UTC)
+    except (OverflowError, ValueError, OSError):  # a clock that counts something else
+        return None
 
 
 def _moment(text: str | None) -> datetime | None:
     return None if text is None else datetime.fromisoformat(text)
 
 
-def _commands(project: Project, scan: dict[str, Any], motion: dict[str, Any]) -> list[str]:
-    """Give what was typed; of stages that were run one by one, what says the same."""
-    typed = scan.get("command")
+def commands_of(out: str, typed: Sequence[str], motion: dict[str, Any]) -> list[str]:
+    """Give what was typed; of stages that were run one by one, what does the same.
+
+    Args:
+        out: The scan's folder.
+        typed: The words of the command that began the scan, after `murkscan`; none from Python.
+        motion: The settings of the motion.
+    """
     if not typed:
         return []
     lines = [shlex.join(["murkscan", *typed])]
     if typed[0] == "extract":
-        out = shlex.quote(str(project.root))
         stages = ("triangulate", "motion", "cloud", "mesh", "view", "report")
         flags = {"motion": f" {_motion_flags(motion)}"}
-        lines += [f"murkscan {stage} {out}{flags.get(stage, '')}" for stage in stages]
+        lines += [f"murkscan {name} {shlex.quote(out)}{flags.get(name, '')}" for name in stages]
     return lines
 
 
