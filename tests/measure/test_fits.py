@@ -105,8 +105,9 @@ def test_errors_that_go_together_widen_the_interval_as_they_should():
         errors -= errors.mean()
         found = covariance_of_fit(slopes, errors, profile, line)
         ratios.append(math.sqrt(found.matrix[0, 0]) * math.sqrt(100))
-    # Weights that fall with distance lose some of the sum: low by up to a quarter, never by half.
-    assert 0.75 < np.mean(ratios) < 1.2
+    # Weights that fall with distance lose some of the sum; what stands in for Student's t of few
+    # patches widens it again. Without heed of neighbours it would be 0.22.
+    assert 0.9 < np.mean(ratios) < 1.6
 
 
 def test_a_scanned_plane_is_measured_within_its_interval():

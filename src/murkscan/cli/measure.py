@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import App, Parameter
 
 from ..errors import InputError
-from .measure_part import PartFlags, print_measurement, read_place, read_plane
+from .measure_part import PartFlags, Place, print_measurement, read_place, read_plane
 
 if TYPE_CHECKING:
     from ..measure import Sample
@@ -58,7 +58,7 @@ def measure(
 
 
 @app.command
-def distance(out: Path, *, from_m: str, to_m: str, name: str = "distance") -> None:
+def distance(out: Path, *, from_m: Place, to_m: Place, name: str = "distance") -> None:
     """Measure between two points of the scan.
 
     Parameters
@@ -137,8 +137,8 @@ def cylinder(out: Path, *, part: PartFlags = PartFlags(), name: str = "cylinder"
 def section(
     out: Path,
     *,
-    point_m: str,
-    normal: str,
+    point_m: Place,
+    normal: Place,
     formats: str = "svg,csv",
     name: str = "section",
 ) -> None:

@@ -3,14 +3,14 @@
 from pathlib import Path
 
 from ..errors import InputError
-from .measure_part import PartFlags, print_measurement, read_place, read_plane
+from .measure_part import MaybePlace, PartFlags, Place, print_measurement, read_place, read_plane
 
 
 def step(
     out: Path,
     *,
-    first_m: str,
-    second_m: str,
+    first_m: Place,
+    second_m: Place,
     within_mm: float,
     name: str = "step",
 ) -> None:
@@ -60,9 +60,9 @@ def area(out: Path, *, part: PartFlags = PartFlags(), name: str = "area") -> Non
 def volume(
     out: Path,
     *,
-    point_m: str | None = None,
-    normal: str | None = None,
-    base_near_m: str | None = None,
+    point_m: MaybePlace = None,
+    normal: MaybePlace = None,
+    base_near_m: MaybePlace = None,
     base_within_mm: float | None = None,
     part: PartFlags = PartFlags(),
     name: str = "volume",

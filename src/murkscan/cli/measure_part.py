@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
@@ -21,17 +21,22 @@ if TYPE_CHECKING:
 _SHOWN = {"m": ("mm", 1e3), "m2": ("cm²", 1e4), "m3": ("cm³", 1e6), "rad": ("°", 180 / math.pi)}
 """Units as people read them, and how many go into ours."""
 
+Place = Annotated[str, Parameter(allow_leading_hyphen=True)]
+"""Coordinates parted by commas, of which the first may be negative."""
+MaybePlace = Annotated[str | None, Parameter(allow_leading_hyphen=True)]
+"""The same, which may be left out."""
+
 
 @Parameter(name="*")
 @dataclass(frozen=True)
 class PartFlags:
     """Which part of the scan: all of it, --near-m and --within-mm, or --box-m."""
 
-    near_m: str | None = None
+    near_m: MaybePlace = None
     """Middle of the part that is measured, as X,Y,Z [m]; with --within-mm."""
     within_mm: float | None = None
     """How far the part reaches from there [mm]."""
-    box_m: str | None = None
+    box_m: MaybePlace = None
     """The part as two corners of a box, X,Y,Z,X,Y,Z [m]."""
 
     def select(self) -> "Selection | None":

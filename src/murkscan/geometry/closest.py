@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import trimesh
+from jaxtyping import Float, Int
 from scipy.spatial import KDTree
 
 from ..types.arrays import Directions, Faces, Indices, Mask, Points, Scalars
@@ -15,6 +16,9 @@ _PAIRS = 500_000
 """Pairs of a point and a triangle that are measured at once: memory stays bounded."""
 _AT_RIM = 1e-6
 """Share of a triangle's height within which a place lies on one of its sides."""
+
+Numbers = Int[np.ndarray, " some"]
+"""Numbers of some of the items."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,8 +66,8 @@ def _approach(
     found: Closest,
     points: Points,
     triangles: np.ndarray,
-    some: Indices,
-    middles: Points,
+    some: Numbers,
+    middles: Float[np.ndarray, "some 3"],
     reach: float,
 ) -> None:
     """Take the places of some triangles, of about one size, where they are nearer."""
@@ -86,7 +90,7 @@ def _take_nearer(
     found: Closest,
     points: Points,
     triangles: np.ndarray,
-    asking: Indices,
+    asking: Numbers,
     candidates: np.ndarray,
     reach: float,
 ) -> None:

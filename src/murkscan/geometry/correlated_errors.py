@@ -23,7 +23,7 @@ _MOST_LAGS = 64
 _LARGEST_SHARE = 0.25
 """Share of the grid's extent over which errors are taken to hang together at most: of less than
 four patches no spread can be told."""
-_WIDTH = 4
+_WIDTH = 2
 """Reaches within which pairs of points count, less and less."""
 _FLOOR = 0.25
 """Share of the variance of independent errors below which none is believed: fringes that cancel
@@ -75,7 +75,7 @@ def covariance_of_fit(
     """Give the covariance of the parameters of a least-squares fit from its own residuals.
 
     How far errors hang together, along the profiles and across them, is read off the residuals'
-    correlation; then the products of all pairs of points within four times that reach are
+    correlation; then the products of all pairs of points within twice that reach are
     summed. That holds whatever the errors' size, which may differ from place to place. What
     the whole of the points share, such as the rig's own error, no residual shows.
 
@@ -89,6 +89,8 @@ def covariance_of_fit(
         Conley, GMM estimation with cross sectional dependence, J. Econometrics 92, 1999.
         Newey and West, A simple, positive semi-definite, heteroskedasticity and autocorrelation
         consistent covariance matrix, Econometrica 55(3), 1987 (the weights).
+        Kiefer and Vogelsang, A new asymptotic theory for heteroskedasticity-autocorrelation robust
+        tests, Econometric Theory 21(6), 2005, table 1 (what few independent patches leave open).
         Politis and White, Automatic block-length selection for the dependent bootstrap,
         Econometric Reviews 23(1), 2004, section 3.2 (the reach).
     """
@@ -98,13 +100,13 @@ def covariance_of_fit(
     # Scaled, so that metres and radians do not spoil the inverse.
     scale = np.maximum(np.linalg.norm(slopes, axis=0), 1e-300)
     scaled = slopes / scale
-    bread = np.linalg.inv(scaled.T @ scaled)
+    bread = np.linalg.pinv(scaled.T @ scaled, hermitian=True)
     meat = _sum_pairs(cells, scaled * residuals[:, None], reach)
     single = scaled.T @ (scaled * (residuals**2)[:, None])
     meat = _at_least(meat, _FLOOR * single)
     inflation = float(np.trace(bread @ meat) / max(np.trace(bread @ single), 1e-300))
     degrees = max(count / max(inflation, 1.0) - parameters, 1.0)
-    correction = (degrees + parameters) / degrees
+    correction = (degrees + parameters) / degrees * _widen(cells, reach)
     matrix = correction * (bread @ meat @ bread) / np.outer(scale, scale)
     return FitCovariance(matrix, degrees, reach)
 
@@ -127,8 +129,10 @@ def covariance_of_sums(
     moments = weights * errors[:, None]
     scale = np.maximum(np.linalg.norm(moments, axis=0), 1e-300)
     moments = moments / scale
-    pairs = _sum_pairs(cells, moments, _find_reach(cells, errors))
-    return _at_least(pairs, _FLOOR * moments.T @ moments) * np.outer(scale, scale)
+    reach = _find_reach(cells, errors)
+    pairs = _sum_pairs(cells, moments, reach)
+    found = _at_least(pairs, _FLOOR * moments.T @ moments) * np.outer(scale, scale)
+    return found * _widen(cells, reach)
 
 
 def _find_reach(cells: _Cells, residuals: Scalars) -> tuple[int, int]:
@@ -168,6 +172,17 @@ def _sum_pairs(
         for m in maps
     ]
     return np.array([[float((m * s).sum()) for s in spread] for m in maps])
+
+
+def _widen(cells: _Cells, reach: tuple[int, int]) -> float:
+    """Give the factor on a variance for sums that reach over much of the points.
+
+    What is fitted away and what too few patches cannot show make such sums too small. The 97.5 %
+    point of the statistic is a cubic of the sums' width over the extent.
+    """
+    share = max(min(_WIDTH * r / extent, 1.0) for r, extent in zip(reach, cells.shape, strict=True))
+    share = min(share, 1.0)
+    return ((1.96 + 2.9694 * share + 0.4160 * share**2 - 0.5324 * share**3) / 1.96) ** 2
 
 
 def _at_least(

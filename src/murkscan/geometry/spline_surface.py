@@ -27,15 +27,16 @@ _SETTLED = 1e-7
 """Change of the surface after which it is done [m]."""
 
 Places = Float[np.ndarray, "n 2"]
+Knots = Float[np.ndarray, "_"]
 
 
 @dataclass(frozen=True, eq=False)
 class SplineSurface:
     """Heights by a tensor product of cubic B-splines."""
 
-    knots: tuple[Scalars, Scalars]
+    knots: tuple[Knots, Knots]
     """Knots along both directions, with the ends repeated [m]."""
-    coefficients: Scalars
+    coefficients: Float[np.ndarray, " k"]
     """Coefficients, the second direction's running fastest [m]."""
     covariance: Float[np.ndarray, "k k"]
     """Covariance of the coefficients for errors of their own in each height [m²]."""
@@ -104,14 +105,14 @@ def fit_spline_surface(
     return SplineSurface(knots, coefficients, covariance)
 
 
-def _lay_knots(extent: float, spacing: float) -> Scalars:
+def _lay_knots(extent: float, spacing: float) -> Knots:
     # Slopes are taken a little beyond the rim, too.
     low, high = -_STEP, extent + _STEP
     inner = np.linspace(low, high, max(math.ceil(extent / spacing), 1) + 1)
     return np.concatenate([[low] * _DEGREE, inner, [high] * _DEGREE])
 
 
-def _design(places: Places, knots: tuple[Scalars, Scalars]) -> sparse.csr_matrix:
+def _design(places: Places, knots: tuple[Knots, Knots]) -> sparse.csr_matrix:
     """Give the weight of each coefficient at each place."""
     count, width = len(places), _DEGREE + 1
     sides = []

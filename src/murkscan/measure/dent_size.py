@@ -9,7 +9,7 @@ from scipy.ndimage import binary_dilation
 
 from ..geometry.correlated_errors import covariance_of_fit, covariance_of_sums
 from ..geometry.height_map import Map, MapFrame
-from ..types.arrays import Points, Scalars
+from ..types.arrays import Points, Vector
 from ..types.dent import Dent
 from ..types.deviation import Deviation
 from ..types.quantity import Quantity
@@ -162,7 +162,7 @@ def _measure_diameter(region: DentRegion, values: Map, reference: float) -> Quan
 
 def _common_part(
     region: DentRegion, sample: Sample, located: Points
-) -> tuple[float | None, Scalars]:
+) -> tuple[float | None, Vector]:
     """Give how the rig's errors deepen the dent, and how they move it, as deviations [m]."""
     if sample.shifts is None:
         return None, np.zeros(3)

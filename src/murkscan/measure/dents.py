@@ -26,6 +26,9 @@ _FALSE_ALARM = 0.05
 """Chance that a map without dents shows one, if its noise were Gaussian …"""
 _HEAVY_TAILS = 1.5
 """… which it is not: factor on that threshold."""
+_SCATTERS = 3.0
+"""Standard deviations of single points below which nothing is told: paint and the finder's habits
+move many points together by as much."""
 _LEAST_SUPPORT = 0.3
 """Share of the usual number of points behind a place of the map below which it tells nothing."""
 _LEAST_PROFILES = 3
@@ -77,7 +80,9 @@ def find_dents(
     noise = _GAUSSIAN * float(np.nanmedian(np.abs(values - np.nanmedian(values))))
     patches = max(np.isfinite(values).sum() / (4 * math.pi * (_SMOOTHING * _CELLS) ** 2), 1.0)
     chance = -float(ndtri(_FALSE_ALARM / (2 * patches)))
-    threshold = max(_HEAVY_TAILS * chance * noise, least_depth)
+    single = values[frame.cells_of(located[kept])] - deviation.values[kept]
+    scatter = _GAUSSIAN * float(np.nanmedian(np.abs(single)))
+    threshold = max(_HEAVY_TAILS * chance * noise, _SCATTERS * scatter, least_depth)
     sample, deviation, located = sample[kept], deviation[kept], located[kept]
     dents = [
         measure_dent(region, sample, deviation, located, values)
@@ -95,8 +100,10 @@ def _average(frame: MapFrame, located: Points, values: Scalars) -> tuple[Map, Ma
     sigma = _SMOOTHING * _CELLS
     for _ in range(2):
         mean, support = smooth_map(*frame.gather(located[kept], values[kept]), sigma=sigma)
-        off = values - mean[frame.cells_of(located)]
-        kept = np.abs(off) <= _STRAY * _GAUSSIAN * np.nanmedian(np.abs(off))
+        around = mean[frame.cells_of(located)]
+        off = np.abs(values - around)
+        # A dent's floor lies below the average over its slopes: that is no reason to leave it out.
+        kept = off <= _STRAY * _GAUSSIAN * np.nanmedian(off) + np.abs(around) / 2
     usual = float(np.median(support[np.isfinite(mean)]))
     mean[support < _LEAST_SUPPORT * usual] = np.nan
     if np.isfinite(mean).sum() < _CELLS**2:

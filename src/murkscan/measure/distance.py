@@ -39,7 +39,7 @@ def measure_distance(sample: Sample, ends: Points) -> Measurement:
         "m",
         length.sigma_independent,
         None if sample.shifts is None else length.sigma_common,
-        degrees=NEIGHBOURS - 3,
+        degrees=float(NEIGHBOURS - 3),
     )
     details = {"from_m": points[0].tolist(), "to_m": points[1].tolist()}
     return Measurement("distance", (quantity,), details)

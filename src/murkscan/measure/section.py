@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from jaxtyping import Float, Int
 from scipy.spatial import KDTree
 
 from ..errors import NotEnoughData
@@ -109,7 +110,7 @@ def _extent(name: str, values: Scalars, axis: Vector, numbers: Indices, sample: 
 
 def _crossings(
     mesh: Mesh, heights: Scalars, above: np.ndarray, faces: Faces
-) -> tuple[np.ndarray, Points]:
+) -> tuple[Int[np.ndarray, "m 2"], Float[np.ndarray, "places 3"]]:
     """Give the two cut edges of each face by number (m 2), and where each edge is cut."""
     sides = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2)
     crossed = above[sides[..., 0]] != above[sides[..., 1]]

@@ -3,10 +3,11 @@
 import math
 
 import numpy as np
+from jaxtyping import Int
 
 from ..geometry.correlated_errors import covariance_of_fit
 from ..geometry.shape_fit import ShapeFit
-from ..types.arrays import Indices, Points, Scalars, Vector
+from ..types.arrays import Points, Scalars, Vector
 from ..types.measurement import Measurement
 from ..types.plane import Plane, span_plane
 from ..types.quantity import Quantity
@@ -65,7 +66,7 @@ def _both_planes(points: Points, normal: Vector, is_second: Scalars) -> tuple[Sc
 
 
 def _common_step(
-    first: Sample, second: Sample, chosen: list[Indices], normal: Vector
+    first: Sample, second: Sample, chosen: list[Int[np.ndarray, " _"]], normal: Vector
 ) -> float | None:
     """Give how the rig's errors change the step [m]."""
     if first.shifts is None or second.shifts is None:
