@@ -8,8 +8,8 @@ _FLAT = 1e-4
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def least_area(points, is_barred):
-    """Cover a closed line by triangles between its points, of least area altogether, none of them a line.
+def least_area(points: np.ndarray, is_barred: np.ndarray) -> np.ndarray:
+    """Cover a closed line by triangles between its points, of least area and none of them a line.
 
     Args:
         points: The line's corners in order [m], n × 3, n at least 3.
@@ -45,8 +45,8 @@ def least_area(points, is_barred):
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def _price(points, i, j, k):
-    """Give a triangle's area, and one of three corners in a line that of a square: it has no side."""
+def _price(points: np.ndarray, i: int, j: int, k: int) -> float:
+    """Give a triangle's area; one that is hardly more than a line costs as much as a square."""
     ux, vx = points[j, 0] - points[i, 0], points[k, 0] - points[i, 0]
     uy, vy = points[j, 1] - points[i, 1], points[k, 1] - points[i, 1]
     uz, vz = points[j, 2] - points[i, 2], points[k, 2] - points[i, 2]
@@ -57,7 +57,7 @@ def _price(points, i, j, k):
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def _collect(split, n):
+def _collect(split: np.ndarray, n: int) -> np.ndarray:
     """Follow the splits from the whole line down to single triangles."""
     triangles = np.empty((n - 2, 3), np.int64)
     waiting = np.empty((n, 2), np.int64)

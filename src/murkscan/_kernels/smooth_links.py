@@ -9,7 +9,15 @@ _FEWEST = 5
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def fit_heights(points, normals, sigma, forwards, backwards, reach, tolerance):
+def fit_heights(
+    points: np.ndarray,
+    normals: np.ndarray,
+    sigma: np.ndarray,
+    forwards: np.ndarray,
+    backwards: np.ndarray,
+    reach: int,
+    tolerance: float,
+) -> np.ndarray:
     """Fit a parabola to the neighbours' heights over each point's tangent plane.
 
     The chain grows by one neighbour to each side; the longest counts whose heights still leave the
@@ -37,7 +45,19 @@ def fit_heights(points, normals, sigma, forwards, backwards, reach, tolerance):
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def _fit_one(i, points, nx, ny, nz, sigma, forwards, backwards, reach, tolerance):
+def _fit_one(
+    i: int,
+    points: np.ndarray,
+    nx: float,
+    ny: float,
+    nz: float,
+    sigma: np.ndarray,
+    forwards: np.ndarray,
+    backwards: np.ndarray,
+    reach: int,
+    tolerance: float,
+) -> float:
+    """Give the height of the longest parabola that describes one point's chain."""
     px, py, pz = points[i, 0], points[i, 1], points[i, 2]
     weight = 1.0 / (sigma[i] * sigma[i])
     s0, s1, s2, s3, s4 = weight, 0.0, 0.0, 0.0, 0.0
@@ -73,16 +93,30 @@ def _fit_one(i, points, nx, ny, nz, sigma, forwards, backwards, reach, tolerance
             count += 1
         if count < _FEWEST:
             continue
-        a, b = s2 * s4 - s3 * s3, s2 * s3 - s1 * s4
-        c = s1 * s3 - s2 * s2
-        det = s0 * a + s1 * b + s2 * c
-        if not det > 1e-12 * s0 * s2 * s4:
-            break
-        at0 = (a * t0 + b * t1 + c * t2) / det
-        at1 = (b * t0 + (s0 * s4 - s2 * s2) * t1 + (s1 * s2 - s0 * s3) * t2) / det
-        at2 = (c * t0 + (s1 * s2 - s0 * s3) * t1 + (s0 * s2 - s1 * s1) * t2) / det
-        left = hh - at0 * t0 - at1 * t1 - at2 * t2
-        if left > tolerance * tolerance * count:
+        at0, left = _solve(s0, s1, s2, s3, s4, t0, t1, t2, hh)
+        # Points in one place, or without weight, have no parabola: that is NaN, which fits nothing.
+        if not left <= tolerance * tolerance * count:
             break
         height = at0
     return height
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy")
+def _solve(
+    s0: float, s1: float, s2: float, s3: float, s4: float,
+    t0: float, t1: float, t2: float, hh: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Give the parabola's height in the middle, and the weighted squares that it leaves.
+
+    The normal equations have the moments s of the places and t of the heights; hh is the sum of the
+    squared heights.
+    """
+    a, b, c = s2 * s4 - s3 * s3, s2 * s3 - s1 * s4, s1 * s3 - s2 * s2
+    det = s0 * a + s1 * b + s2 * c
+    if not det > 1e-12 * s0 * s2 * s4:
+        return np.nan, np.nan
+    d, e, f = s0 * s4 - s2 * s2, s1 * s2 - s0 * s3, s0 * s2 - s1 * s1
+    at0 = (a * t0 + b * t1 + c * t2) / det
+    at1 = (b * t0 + d * t1 + e * t2) / det
+    at2 = (c * t0 + e * t1 + f * t2) / det
+    return at0, hh - at0 * t0 - at1 * t1 - at2 * t2

@@ -13,13 +13,13 @@ _COLOURS = ("red", "green", "blue")
 def as_ply(mesh: Mesh) -> bytes:
     """Give a binary PLY file; `filled` marks triangles that close a hole."""
     corners = [(name, "<f8") for name in "xyz"]
-    if mesh.colours is not None:
-        corners += [(name, "u1") for name in _COLOURS]
+    colours = np.zeros((0, 0)) if mesh.colours is None else mesh.colours
+    corners += [(name, "u1") for name in _COLOURS[: colours.shape[1]]]
     vertices = np.empty(len(mesh.vertices), corners)
     for axis, name in enumerate("xyz"):
         vertices[name] = mesh.vertices[:, axis]
-    for channel, name in enumerate(_COLOURS if mesh.colours is not None else ()):
-        vertices[name] = mesh.colours[:, channel]
+    for name, column in zip(_COLOURS, colours.T, strict=False):
+        vertices[name] = column
     marks = [] if mesh.filled is None else [("filled", "u1")]
     faces = np.empty(len(mesh.faces), [("count", "u1"), ("corners", "<i4", 3), *marks])
     faces["count"], faces["corners"] = 3, mesh.faces
