@@ -130,7 +130,7 @@ def test_a_flipped_byte_gives_a_mesh_or_one_sentence(tmp_path, suffix, at, byte)
     except FormatError as error:
         mesh, told = pyramid(), str(error)
     assert not told or f"mesh{suffix}" in told
-    assert 0 <= mesh.faces.min()
+    assert mesh.faces.min() >= 0
     assert mesh.faces.max() < len(mesh.vertices)
 
 
