@@ -23,6 +23,10 @@ _REACH = 8.0
 """Scan lines over which centres are joined."""
 _ROUGH = 0.06
 """Roughness of a surface from scan line to scan line, as far as nothing shows more [px]."""
+_INNER, _APART = 3, 4.0
+"""Scan lines from a stripe's end to where it is as bright as it is, and pixels a line that part."""
+_BLUR = 0.2
+"""Chance that such an end is the surface and not the lens's blur."""
 _RIGHT = 1.5
 """Pixels within which a centre is the surface's, and not something beside it."""
 
@@ -109,15 +113,33 @@ def find_centres(
     lines, (position, sigma, height, _, skirt, _) = ridges.lines, found.T
     fits = np.isfinite(position)
     spread = lines.stretch * np.hypot(shape.misfit * sigma, shape.floor)
-    centres = Centres(
-        lines,
-        line,
-        lines.as_full_frame(position),
-        spread,
-        height * (1 + skirt),
-        posterior[line, which],
-    )
-    return centres[fits]
+    full, signal = lines.as_full_frame(position), height * (1 + skirt)
+    centres = Centres(lines, line, full, spread, signal, posterior[line, which])[fits]
+    return doubt_ends(centres, width=lines.stretch * shape.width)
+
+
+def doubt_ends(centres: Centres, *, width: float) -> Centres:
+    """Lower the posterior where the lens carries a stripe beyond its end.
+
+    There the last centre is surely much fainter than those further in.
+
+    Args:
+        centres: Of one frame, before they are joined.
+        width: 1σ of the stripe [full-frame px].
+    """
+    num_lines = centres.lines.num_lines + 2 * _INNER
+    place, signal = np.full(num_lines, np.nan), np.full(num_lines, np.nan)
+    at = centres.scan_line + _INNER
+    place[at], signal[at] = centres.position, centres.signal
+    # A stripe's height is known as well, in proportion, as its place in units of its width.
+    most = centres.signal * (1 + 2 * centres.sigma / width)
+    is_blur = np.zeros(len(centres), bool)
+    for way in (-1, 1):
+        goes_on = np.abs(place[at + way] - centres.position) < _APART
+        inner = at - _INNER * way
+        belongs = np.abs(place[inner] - centres.position) < _INNER * _APART
+        is_blur |= ~goes_on & belongs & (most < 0.5 * signal[inner])
+    return replace(centres, posterior=np.where(is_blur, _BLUR, 1.0) * centres.posterior)
 
 
 def join_frames(near: Mapping[int, Centres]) -> Centres:
