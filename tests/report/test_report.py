@@ -249,7 +249,9 @@ def test_a_recording_without_a_stripe_is_said_to_have_none():
 def test_a_recording_of_one_frame_has_a_report():
     summary = _summary([0], frames=_times(1), cloud=None, mesh_size=(0, 0))
     summary = _covered(summary, [0], 1)
-    assert "found in 1 of 1 frames" in _text(as_html(summary))
+    text = _text(as_html(summary))
+    assert "found in 1 of 1 frames" in text
+    assert "There is no map" in text
     assert as_json(summary)["coverage"] is None
     assert as_json(summary)["speed"] is None
 

@@ -25,6 +25,12 @@ _SKIPS_SHOWN = 50
 _UNITS = "Lengths in metres, times in seconds, angles in radians, pictures in pixels."
 
 
+_NO_MAP = (
+    "There is no map: it needs neighbouring points on two profiles at least, and a motion between "
+    "them."
+)
+
+
 def as_html(summary: ScanSummary) -> str:
     """Make report/index.html."""
     sections = [
@@ -36,6 +42,8 @@ def as_html(summary: ScanSummary) -> str:
         sections.append(Section("Pictures", [_gallery(views, is_first_large=True)]))
     if summary.coverage is not None:
         sections.append(Section("Coverage", coverage_blocks(summary.coverage)))
+    elif summary.num_points:
+        sections.append(Section("Coverage", [Note(_NO_MAP, "warning")]))
     if summary.speed is not None:
         sections.append(Section("Speed and spacing", speed_blocks(summary.speed, summary)))
     if summary.num_points:

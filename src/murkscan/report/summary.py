@@ -140,6 +140,7 @@ def summarise(
         if trajectory is None
         else judge_speed(frames, trajectory, is_timed=recorded.is_timed, wanted=needed),
         steps=read_steps(recorded.calibration or {}, recorded=recorded.date),
+        coverage=None,
         **spreads,
     )
 
