@@ -12,7 +12,7 @@ from ..project import Project
 from ..types.cloud import PointCloud
 from ..view import Layer, Model, choose_fairly, model_of_scan
 from .measured import measure_file
-from .merge import is_merged
+from .merged import is_merged
 from .shift_field import trace_shift_field
 
 DEVIATION = "deviation"

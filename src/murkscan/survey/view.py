@@ -8,7 +8,7 @@ from ..errors import InputError
 from ..page import Gallery, Note, Picture, Section, render_page
 from ..project import Project
 from ..view import MOST, PICTURES, Model, draw_pictures, render_viewer
-from .merge import is_merged
+from .merged import is_merged
 from .progress import Progress, silent
 from .shown import DEVIATION, deviation_digest, folder_of, load_model, title_of
 
