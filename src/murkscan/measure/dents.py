@@ -29,6 +29,9 @@ _HEAVY_TAILS = 1.5
 _SCATTERS = 3.0
 """Standard deviations of single points below which nothing is told: paint and the finder's habits
 move many points together by as much."""
+_REFERENCE = 5.0
+"""Standard deviations of the reference that a departure must exceed as well: at the rim of a scan a
+smooth surface through it is hardly held."""
 _LEAST_SUPPORT = 0.3
 """Share of the usual number of points behind a place of the map below which it tells nothing."""
 _LEAST_PROFILES = 3
@@ -89,6 +92,7 @@ def find_dents(
         for sign in (-1.0, 1.0)
         for region in _regions(frame, sign * values, threshold, noise, sign)
         if _is_seen_again(region, sample, deviation, located)
+        and _is_beyond_reference(region, deviation, located, values, threshold)
     ]
     dents.sort(key=lambda dent: -abs(dent.depth.value))
     return DentSearch(tuple(dents), threshold, noise)
@@ -112,6 +116,15 @@ def _average(frame: MapFrame, located: Points, values: Scalars) -> tuple[Map, Ma
             "smaller ones with --smallest-mm."
         )
     return mean, kept
+
+
+def _is_beyond_reference(
+    region: DentRegion, deviation: Deviation, located: Points, values: Map, threshold: float
+) -> bool:
+    """Tell whether a departure is more than map and reference together leave open there."""
+    there = region.cells[region.frame.cells_of(located)]
+    sigma = float(np.max(deviation.sigma_reference[there], initial=0.0))
+    return abs(float(values[region.deepest])) > math.hypot(threshold, _REFERENCE * sigma)
 
 
 def _is_seen_again(

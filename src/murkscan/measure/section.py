@@ -7,7 +7,7 @@ from jaxtyping import Float, Int
 from scipy.spatial import KDTree
 
 from ..errors import NotEnoughData
-from ..types.arrays import Faces, Indices, Points, Scalars, Vector
+from ..types.arrays import Faces, Indices, Scalars, Vector
 from ..types.measurement import Measurement
 from ..types.mesh import Mesh
 from ..types.plane import Plane
@@ -22,7 +22,7 @@ class Section:
 
     plane: Plane
     """The plane, in the world."""
-    lines: tuple[Points, ...]
+    lines: tuple[Float[np.ndarray, "_ 3"], ...]
     """Each line's corners in order, in the world [m]; a closed one ends where it begins."""
 
     @property
@@ -69,7 +69,9 @@ def cut_section(mesh: Mesh, plane: Plane) -> Section:
     return Section(plane, tuple(places[order] for order in _join(edges)))
 
 
-def measure_section(section: Section, sample: Sample) -> tuple[Measurement, list[Scalars]]:
+def measure_section(
+    section: Section, sample: Sample
+) -> tuple[Measurement, list[Float[np.ndarray, " _"]]]:
     """Give the size of a section, and the standard deviation of each of its corners.
 
     Returns:

@@ -10,6 +10,7 @@ from ..measure import (
     DentSearch,
     Sample,
     Selection,
+    cut_out,
     deviation_from_mesh,
     deviation_from_smooth,
     draw_histogram,
@@ -27,6 +28,7 @@ from ..view.render import render
 from ..view.values import SignedValues
 from ..view.views import standard_views
 from .measured import as_plain, measure_file, save_measurement
+from .merged import is_merged
 from .reference import Reference
 from .sample import load_sample
 
@@ -57,7 +59,7 @@ def compare_scan(
     """
     measure_file(project, name)
     sample = load_sample(project, selection)
-    surface = project.load_mesh()
+    surface = cut_out(project.load_mesh(), selection)
     deviation = deviation_from_mesh(
         sample, reference.mesh, within=within, sigma=reference.sigma_along
     )
@@ -101,7 +103,7 @@ def search_dents(
     """
     measure_file(project, name)
     sample = load_sample(project, selection)
-    surface = project.load_mesh()
+    surface = cut_out(project.load_mesh(), selection)
     if reference is None:
         deviation = deviation_from_smooth(sample, largest=largest)
     else:
@@ -129,7 +131,8 @@ def _save_points(project: Project, name: str, sample: Sample, deviation: Deviati
 def _draw(project: Project, name: str, surface: Mesh, sample: Sample, deviation: Deviation) -> None:
     """Draw the scan's surface, coloured by its deviation."""
     colours = SignedValues(sample.cloud.points, deviation.values)
-    for view in standard_views(project.load_trajectory()):
+    trajectory = None if is_merged(project) else project.load_trajectory()
+    for view in standard_views(trajectory):
         if view.name in _PICTURES:
             picture = render(surface, view, colours=colours)
             write_image(measure_file(project, f"{name}-{view.name}", "png"), picture)

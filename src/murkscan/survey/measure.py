@@ -80,7 +80,7 @@ def measure_cut(
     if "csv" in files:
         save_section_csv(files["csv"], drawing, section.lines, sigmas)
     if "svg" in files:
-        save_section_svg(files["svg"], drawing, title=f"Section {name}")
+        save_section_svg(files["svg"], drawing, title=name)
     if "dxf" in files:
         save_section_dxf(files["dxf"], drawing)
     save_measurement(project, name, measured)

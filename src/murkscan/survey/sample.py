@@ -18,6 +18,7 @@ from ..types.profile import Profile
 from ..types.rig import Rig
 from ..types.trajectory import Trajectory
 from .common_part import moving_rig
+from .merged import is_merged
 from .scan_rig import load_scan_rig
 
 _FEWEST = 10
@@ -35,12 +36,7 @@ def load_sample(project: Project, selection: Selection | None = None) -> Sample:
         InputError: A point is not finite.
     """
     cloud = project.load_cloud()
-    rig = moving_rig(project, load_scan_rig(project))
-    sample = Sample.from_cloud(
-        cloud,
-        sight=_look_back(project, cloud, rig),
-        shifts=_trace_shifts(project, cloud, rig) if rig.covariance.names else None,
-    )
+    sample = _know_all(project, cloud)
     if selection is None:
         return sample
     chosen = selection.contains(cloud.points)
@@ -51,6 +47,18 @@ def load_sample(project: Project, selection: Selection | None = None) -> Sample:
             f"{_FEWEST} are needed; the scan reaches from {_place(low)} to {_place(high)} m."
         )
     return sample[chosen]
+
+
+def _know_all(project: Project, cloud: PointCloud) -> Sample:
+    """Say of a cloud what is known of it; of a merged one neither ways nor rigs are kept."""
+    if len(cloud) == 0 or is_merged(project):
+        return Sample.from_cloud(cloud)
+    rig = moving_rig(project, load_scan_rig(project))
+    return Sample.from_cloud(
+        cloud,
+        sight=_look_back(project, cloud, rig),
+        shifts=_trace_shifts(project, cloud, rig) if rig.covariance.names else None,
+    )
 
 
 def _look_back(project: Project, cloud: PointCloud, rig: Rig) -> Sight | None:
