@@ -69,11 +69,11 @@ def test_every_command_has_help(command, capsys):
         (("--speed-mm-s", "100"), "--fps"),
         (("--poses", "nowhere.csv"), "nowhere.csv"),
         (("--step-mm", "1", "--laser", "3"), "no laser 3"),
-        (("--step-mm", "1", "--set", "colour=3"), "is no setting of GrayGravity"),
+        (("--step-mm", "1", "--set", "colour=3"), "is no setting of Murk"),
         (("--step-mm", "1", "--extractor", "magic"), "magic"),
         (("--step-mm", "1", "--start-time", "noon", "--poses", "x"), "exactly one of"),
         (("--step-mm", "1", "--start-time", "5"), "go with --poses"),
-        (("--step-mm", "1", "--set", "half_width=nan"), "half_width"),
+        (("--step-mm", "1", "--set", "clutter=nan"), "clutter"),
     ],
 )
 def test_a_wrong_scan_is_one_sentence_and_status_2(short, tmp_path, capfd, more, says):

@@ -29,7 +29,7 @@ def frames(data):
 
 @pytest.mark.parametrize(
     ("extractor", "flat"),
-    [(ms.GrayGravity(), 0.12e-3), (ms.GaussianFit(), 0.12e-3), (ms.Steger(), 0.12e-3)],
+    [(finder, 0.12e-3) for finder in (ms.Murk(), ms.GrayGravity(), ms.GaussianFit(), ms.Steger())],
     ids=lambda value: type(value).__name__,
 )
 def test_steps_are_within_a_tenth_of_a_millimetre_of_the_caliper(frames, extractor, flat):
