@@ -53,8 +53,7 @@ def follow_chain(
         none_ahead[u] = none / total
         scale[u] = (scale[u - 1] if u else 0.0) + np.log(total)
     behind = _run_back(counts, evidence, links, scale, start, birth, death)
-    end = none_ahead[num_lines - 1] + ahead[num_lines - 1].sum()
-    return np.minimum(ahead * behind / end, 1.0)
+    return np.minimum(ahead * behind, 1.0)
 
 
 @njit(cache=True, nogil=True)
@@ -112,7 +111,8 @@ def _weigh_links(
 def _weigh_step(step: float, change: float, gap: int, length: int, bends: np.ndarray) -> float:
     """Give the density of a step in position and in the logarithm of height.
 
-    Steps in position are two Laplace laws and a jump to anywhere; in height Huber's law, and any.
+    Steps in position are two Laplace laws and a jump to anywhere; those in height a Gaussian with
+    exponential tails, whose norm is 2.66, and for 15 of 100 anything over four e-folds.
     """
     near, wide, near_share, wide_share, scale = bends
     density = (1.0 - near_share - wide_share) / length

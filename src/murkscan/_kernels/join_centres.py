@@ -5,8 +5,8 @@ from numba import njit
 
 from .cholesky import first_variance, solve
 
-_SIZE = 4
-"""Parameters: centre, its slope over lines, its speed over frames, its curvature over lines."""
+_SIZE = 5
+"""Parameters: centre, its slope over lines, its speed over frames, its curvature over both."""
 _TURNS = 3
 _MOST = 512
 """Neighbours of a centre that are looked at."""
@@ -46,12 +46,15 @@ def _join_one(
         right[:] = 0.0
         matrix[1, 1] = matrix[2, 2] = 1.0 / 0.3**2
         matrix[3, 3] = 1.0 / 0.02**2
+        matrix[4, 4] = 1.0 / 0.03**2
         weights, misfits = 0.0, 0.0
         for k in range(count):
             along, later, off, noise, far, own = near[k]
             spread = noise + own + excess * far
-            slopes[1], slopes[2], slopes[3] = along, later, along * along
-            miss = off - (p[0] + p[1] * along + p[2] * later + p[3] * slopes[3])
+            slopes[1], slopes[2] = along, later
+            slopes[3], slopes[4] = along * along, later * later
+            bent = p[3] * slopes[3] + p[4] * slopes[4]
+            miss = off - (p[0] + p[1] * along + p[2] * later + bent)
             robust = 1.0 + miss * miss / (4.0 * spread) if turn else 1.0
             weight = 1.0 / (spread * robust)
             for a in range(_SIZE):

@@ -46,7 +46,9 @@ def add_neighbour(
     Where the other frame is a field of the other rows, its pixels lie half a pixel off: then the
     scores there and (down, across) further back are added up and scaled by `correlation`.
     """
-    length, num_lines = scores.shape
+    # The fields of a picture with an odd number of rows differ by one.
+    length = min(scores.shape[0], other.shape[0])
+    num_lines = min(scores.shape[1], other.shape[1])
     for v in range(length):
         near = other[v]
         far = other[min(max(v - down, 0), length - 1)]

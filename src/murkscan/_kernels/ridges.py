@@ -73,7 +73,7 @@ def compare_ridges(
     It has one that lies within `near` and is at least `share` as high.
     """
     is_there = np.zeros(positions.shape, np.bool_)
-    for u in range(len(counts)):
+    for u in range(min(len(counts), len(other_counts))):
         for k in range(counts[u]):
             for j in range(other_counts[u]):
                 off = abs(other_positions[u, j] + shift - positions[u, k])

@@ -86,7 +86,8 @@ def estimate_attenuation(glow: Glow, rig: Rig, *, laser: int = 0) -> Attenuation
     looks = [seen, _without_vignetting(seen, rig)]
     looks += [_look(glow, rig, laser, phase) for phase in _PHASES]
     # What looks dark may be light that was scattered too often to fade.
-    once = [_fit(look, is_dark=dark) for look in looks for dark in (True, False)]
+    once = [effective, _fit(seen, is_dark=False)]
+    once += [_fit(look, is_dark=dark) for look in looks[1:] for dark in (True, False)]
     often = [
         _fit(seen, albedo=albedo, broad=broad, is_dark=dark)
         for albedo in _ALBEDOS
@@ -121,7 +122,7 @@ def _look(glow: Glow, rig: Rig, laser: int, phase: AbstractPhase) -> _Seen:
     index = refractive_index(rig.water, rig.wavelength)
     fan = as_fan(rig.laser(laser))
     rays = back_project(rig.camera, glow.pixels, index)
-    points = intersect_rays_with_sheet(rays, rig.lasers[laser], index)
+    points = intersect_rays_with_sheet(rays, rig.laser(laser), index)
     where = locate_on_fan(points, fan, index)
     away = np.linalg.norm(points - fan.origin, axis=1)
     camera_range = np.linalg.norm(points - rays.origins, axis=1)

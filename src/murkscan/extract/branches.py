@@ -12,12 +12,13 @@ _GAP = 3
 _BEND = (1.5, 0.75)
 """Pixels by which it may be off there, and more for each line."""
 
-Posterior = Float[np.ndarray, "lines most"]
+Weights = Float[np.ndarray, "lines most"]
+"""One number a ridge."""
 Places = Float[np.ndarray, "n 2"]
 """Scan line and position, one a row."""
 
 
-def go_on_beside(ridges: Ridges, first: Posterior, second: Posterior) -> Marks:
+def go_on_beside(ridges: Ridges, first: Weights, second: Weights) -> Marks:
     """Tell which ridges of a second chain are a surface that the first chain leaves at an edge.
 
     Every ray of the laser ends on one surface, so a scan line shows two only beside an edge, where

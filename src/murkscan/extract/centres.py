@@ -130,6 +130,8 @@ def doubt_ends(centres: Centres, *, width: float) -> Centres:
     num_lines = centres.lines.num_lines + 2 * _INNER
     place, signal = np.full(num_lines, np.nan), np.full(num_lines, np.nan)
     at = centres.scan_line + _INNER
+    # Beside an occlusion a scan line has two, which are both no end.
+    alone = np.bincount(at, minlength=num_lines)[at] == 1
     place[at], signal[at] = centres.position, centres.signal
     # A stripe's height is known as well, in proportion, as its place in units of its width.
     most = centres.signal * (1 + 2 * centres.sigma / width)
@@ -138,15 +140,15 @@ def doubt_ends(centres: Centres, *, width: float) -> Centres:
         goes_on = np.abs(place[at + way] - centres.position) < _APART
         inner = at - _INNER * way
         belongs = np.abs(place[inner] - centres.position) < _INNER * _APART
-        is_blur |= ~goes_on & belongs & (most < 0.5 * signal[inner])
+        is_blur |= alone & ~goes_on & belongs & (most < 0.5 * signal[inner])
     return replace(centres, posterior=np.where(is_blur, _BLUR, 1.0) * centres.posterior)
 
 
 def join_frames(near: Mapping[int, Centres]) -> Centres:
     """Join a frame's centres with those around them, in scan lines and in frames.
 
-    A parabola over scan lines that moves evenly over frames is put through the neighbours of each
-    centre. They count as far as surfaces are smooth: less with distance, and with their misfit.
+    A parabola over scan lines and over frames is put through the neighbours of each centre. They
+    count as far as surfaces are smooth: less with distance, and with their misfit.
 
     Args:
         near: Centres of the frame, 0, and of those around it.

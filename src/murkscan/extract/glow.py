@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from ..types.arrays import Indices, Mask, Pixels, Scalars
-from ..types.background import Noise
+from ..types.background import Noise, StripeShape
 from ..types.frame import Frame
 from ..types.laser import Axis
 from ..types.stripe import Stripe
@@ -17,8 +17,8 @@ _BLOCK = 8
 """Scan lines that are averaged, but for those that a particle covers."""
 _EVERY = 3
 """Pixels from one sample to the next along a scan line."""
-_CLEAR = 24.0
-"""Full-frame pixels that the stripe must be away, with its skirt."""
+_CLEAR = 24.0, 10.0
+"""Full-frame pixels, and widths of the stripe, that it must be away with its skirt."""
 _FEWEST = 4
 """Frames that must show a place."""
 
@@ -49,7 +49,13 @@ class Glow:
 
 
 def learn_glow(
-    frames: Sequence[Frame], stripes: Sequence[Stripe], axis: Axis, noise: Noise, *, near: int
+    frames: Sequence[Frame],
+    stripes: Sequence[Stripe],
+    axis: Axis,
+    noise: Noise,
+    *,
+    near: int,
+    clear: float,
 ) -> Glow:
     """Average what lies before the surface over frames.
 
@@ -61,6 +67,7 @@ def learn_glow(
         axis: The camera's axis along which the laser sits.
         noise: Of a pixel.
         near: -1 or 1, the way along scan lines in which nearer surfaces are seen.
+        clear: Distance from the stripe; see `clearance`.
     """
     parts = []
     for row in sorted({frame.first_row for frame in frames}):
@@ -69,17 +76,25 @@ def learn_glow(
             for frame, stripe in zip(frames, stripes, strict=True)
             if frame.first_row == row
         ]
-        parts.append(_average(alike, noise, near))
+        parts.append(_average(alike, noise, near, clear))
     columns = ("pixels", "block", "level", "variance")
     joined = (np.concatenate([getattr(part, name) for part in parts]) for name in columns)
     return Glow(*joined)
 
 
-def _average(alike: Sequence[tuple[ScanLines, Stripe]], noise: Noise, near: int) -> Glow:
+def clearance(shape: StripeShape, frame: Frame) -> float:
+    """Give how far from the stripe its skirt is gone [full-frame px]."""
+    least, widths = _CLEAR
+    return max(least, widths * shape.width * shape.binning * frame.row_step)
+
+
+def _average(
+    alike: Sequence[tuple[ScanLines, Stripe]], noise: Noise, near: int, clear: float
+) -> Glow:
     """Average over frames of the same rows what lies before their surface."""
     lines = alike[0][0]
     stack = np.stack([average_blocks(each, noise) for each, _ in alike])
-    behind = np.stack([is_behind(each, stripe, near) for each, stripe in alike])
+    behind = np.stack([is_behind(each, stripe, near, clear) for each, stripe in alike])
     before = np.where(behind, np.nan, stack)
     place, block = np.nonzero(np.isfinite(before).sum(axis=0) >= _FEWEST)
     level, number = _mean_within(before[:, place, block], 0, noise)
@@ -93,11 +108,13 @@ def _average(alike: Sequence[tuple[ScanLines, Stripe]], noise: Noise, near: int)
 def average_blocks(lines: ScanLines, noise: Noise) -> Levels:
     """Average each block of scan lines, without particles."""
     count = lines.num_lines // _BLOCK
-    blocks = lines.levels[::_EVERY, : count * _BLOCK].reshape(-1, count, _BLOCK).astype(float)
-    return _mean_within(blocks, 2, noise)[0]
+    levels = lines.levels[::_EVERY, : count * _BLOCK].astype(float)
+    return _mean_within(levels.reshape(len(levels), count, _BLOCK), 2, noise)[0]
 
 
-def is_behind(lines: ScanLines, stripe: Stripe, near: int) -> Bool[np.ndarray, "length blocks"]:
+def is_behind(
+    lines: ScanLines, stripe: Stripe, near: int, clear: float
+) -> Bool[np.ndarray, "length blocks"]:
     """Tell which samples are at the stripe or behind it, or have none in their block."""
     count = lines.num_lines // _BLOCK
     line, along = lines.split(stripe.pixels)
@@ -107,7 +124,7 @@ def is_behind(lines: ScanLines, stripe: Stripe, near: int) -> Bool[np.ndarray, "
     nearest.at(ends, line[inside] // _BLOCK, along[inside])
     samples = len(lines.levels[::_EVERY])
     place = lines.as_full_frame(_EVERY * np.arange(samples, dtype=float))[:, None]
-    return ~(near * (place - ends) > _CLEAR) | ~np.isfinite(ends)
+    return ~(near * (place - ends) > clear) | ~np.isfinite(ends)
 
 
 def _mean_within(

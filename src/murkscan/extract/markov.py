@@ -23,7 +23,8 @@ _SEEN, _SEEN_FAINT, _UNSEEN = 1.8, 1.0, -2.5
 _FAINT, _FULL = 4.5, (2.5, 5.5)
 """Score below which noise hides a ridge, and scores over which its absence comes to count."""
 _PERSISTENT = (0.3, 0.6)
-"""Share of sure ridges that the next frame has, too, over which frames come to count at all."""
+"""Share of sure ridges that the next frame of the same rows has, too, over which frames come to
+count at all."""
 _END = -8.0
 """Logarithm of the likelihood ratio of a stripe's blur beyond its end."""
 _CLEAR = 4.0
@@ -78,7 +79,7 @@ class Markov:
         # Local maxima of white noise through the filter, by their height (Rice 1945).
         noise = 0.55 * height**2 * np.exp(-0.5 * height**2)
         other = 0.0 if said is None else np.minimum(said, 20.0)
-        return np.where(ridges.exist, np.exp(other) / (noise + 0.25 * self.clutter), 0.0)
+        return np.where(ridges.exist, np.exp(other) / (noise + self.clutter), 0.0)
 
     def _chain(self, ridges: Ridges, ratio: Evidence) -> Posterior:
         length = len(ridges.lines.levels)
@@ -109,7 +110,7 @@ def ask_frames(near: Mapping[int, Ridges], markov: Markov) -> Evidence:
 
 def _persistence(near: Mapping[int, Ridges]) -> float:
     """Give from 0 to 1 how far frames that follow one another show the same surface."""
-    shares = [near[k].agreement(near[k + 1]) for k in near if k + 1 in near]
+    shares = [near[k].agreement(near[k + 2]) for k in near if k + 2 in near]
     known = [share for share in shares if not np.isnan(share)]
     if not known:
         return 1.0

@@ -16,9 +16,8 @@ from .scan_lines import ScanLines
 class MatchedFilter:
     """The filter, and the noise by which its answer is divided."""
 
-    width: float
-    """1σ of the ridge [px]."""
     noise: Noise
+    """Of a pixel."""
     template: Ratios
 
     @classmethod
@@ -29,7 +28,7 @@ class MatchedFilter:
         bell = np.exp(-0.5 * (x / width) ** 2)
         smooth = np.stack([x**0, x, x**2], axis=1)
         bell -= smooth @ np.linalg.lstsq(smooth, bell, rcond=None)[0]
-        return cls(width, noise, (bell / np.linalg.norm(bell)).astype(np.float32))
+        return cls(noise, (bell / np.linalg.norm(bell)).astype(np.float32))
 
     @property
     def reach(self) -> int:

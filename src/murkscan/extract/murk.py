@@ -19,7 +19,7 @@ from .assemble import assemble_stripe
 from .attenuation import estimate_attenuation, nearer_side
 from .base import AbstractExtractor
 from .centres import Centres, doubt_wide, find_centres, join_frames
-from .glow import learn_glow
+from .glow import clearance, learn_glow
 from .markov import Markov, ask_frames
 from .matched_filter import MatchedFilter
 from .neighbours import with_neighbours
@@ -46,7 +46,7 @@ class Murk(AbstractExtractor):
     """Probability from which a point is given, at least a half."""
     min_score: float = 2.5
     """Standard deviations of the noise from which a ridge is looked at."""
-    clutter: float = 0.08
+    clutter: float = 0.02
     """Ridges of snow and glow that are expected in a pixel and an e-fold of height."""
     birth: float = 3e-5
     """Probability that a stripe begins at a scan line."""
@@ -72,12 +72,12 @@ class Murk(AbstractExtractor):
         background = Background(learn_noise(frames).noise, levels, shape)
         alone = (self.extract([frame], rig, background, laser=laser) for frame in frames)
         stripes = [next(found) for found in alone]
-        near = nearer_side(rig, laser=laser)
-        remarks = find_remarks(frames, stripes, axis, levels, near=near)
+        near, clear = nearer_side(rig, laser=laser), clearance(shape, frames[0])
+        remarks = find_remarks(frames, stripes, axis, levels, near=near, clear=clear)
         background = replace(background, remarks=remarks)
         if rig.water is None:
             return background
-        glow = learn_glow(frames, stripes, axis, levels, near=near)
+        glow = learn_glow(frames, stripes, axis, levels, near=near, clear=clear)
         return replace(background, attenuation=estimate_attenuation(glow, rig, laser=laser))
 
     def extract(

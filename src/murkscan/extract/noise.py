@@ -6,7 +6,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Shaped
 
 from ..types.arrays import Image, Scalars
 from ..types.background import Background, Noise
@@ -69,7 +69,7 @@ def _spread(values: np.ndarray) -> float:
     if values.size == 0:
         return 0.0
     size = np.abs(values)
-    middle = float(np.median(size))
+    middle = float(np.quantile(size, 0.5, method="lower"))
     # Among equal whole numbers the median is the share of smaller ones that says where it lies.
     below, at = np.mean(size < middle), np.mean(size == middle)
     return _GAUSSIAN * max(middle - 0.5 + float((0.5 - below) / at), 0.0)
@@ -93,11 +93,13 @@ gives, from which an encoder has smoothed it away."""
 _STEP = 1.0
 """Least variance then [grey levels²]: what is left are blocks that differ by a level."""
 
+Pictures = Sequence[Shaped[np.ndarray, "_ _"]]
+"""Pictures that may differ in size, as the fields of an odd number of rows do."""
 Bins = Float[np.ndarray, "bins 3"]
 """Mean level, variance of a pixel, number of differences."""
 
 
-def learn_levels(images: Sequence[Image]) -> Noise:
+def learn_levels(images: Pictures) -> Noise:
     """Estimate how a pixel's noise grows with its level, from differences within pictures.
 
     Args:
@@ -116,7 +118,7 @@ def learn_levels(images: Sequence[Image]) -> Noise:
     return replace(far, least=_STEP) if is_smoothed else near
 
 
-def _learn_law(images: Sequence[Image], white: float, lag: int) -> Noise:
+def _learn_law(images: Pictures, white: float, lag: int) -> Noise:
     """Estimate the noise from pixels that are `lag` apart."""
     bends = (_bends(image, lag) for image in images)
     level, bend = (np.concatenate(parts) for parts in zip(*bends, strict=True))
@@ -130,18 +132,21 @@ def _learn_law(images: Sequence[Image], white: float, lag: int) -> Noise:
     return Noise(fixed, gain, white)
 
 
-def _learn_white(images: Sequence[Image]) -> float:
+def _learn_white(images: Pictures) -> float:
     """Give the level that clipped pixels pile up at; the largest that there is where none do."""
     levels = np.concatenate([image.ravel() for image in images])
     top = int(levels.max())
     at_top, below = np.sum(levels == top), np.sum((levels < top) & (levels >= top - 5)) / 5
-    piled = at_top > max(50, 5 * below)
-    return float(top if piled and top > 0 else np.iinfo(levels.dtype).max)
+    # Even pictures, such as a codec's black, pile up as well.
+    piled = at_top > max(50, 5 * below) and top > 2 * np.median(levels) + 10
+    return float(top if piled else np.iinfo(levels.dtype).max)
 
 
 def _bends(image: Image, lag: int) -> tuple[Scalars, Scalars]:
     """Give the mean level and the fourth difference at every second pixel."""
     reach = lag * (len(_KERNEL) - 1) + 1
+    if image.shape[1] < reach:
+        return np.zeros(0), np.zeros(0)
     windows = np.lib.stride_tricks.sliding_window_view(image, reach, axis=1)[:, ::2, ::lag]
     return windows.mean(axis=2).ravel(), (windows @ _KERNEL.astype(np.int32)).ravel().astype(float)
 

@@ -30,7 +30,13 @@ Levels = Float[np.ndarray, "frames places"]
 
 
 def find_remarks(
-    frames: Sequence[Frame], stripes: Sequence[Stripe], axis: Axis, noise: Noise, *, near: int
+    frames: Sequence[Frame],
+    stripes: Sequence[Stripe],
+    axis: Axis,
+    noise: Noise,
+    *,
+    near: int,
+    clear: float,
 ) -> tuple[str, ...]:
     """Look for what makes a recording worse than it could be.
 
@@ -40,12 +46,13 @@ def find_remarks(
         axis: The camera's axis along which the laser sits.
         noise: Of a pixel.
         near: -1 or 1, the way along scan lines in which nearer surfaces are seen.
+        clear: Distance from the stripe at which its skirt is gone [full-frame px].
 
     Returns:
         Sentences that say what was seen and what to do; none for a good recording.
     """
     remarks = [*_about_stripes(frames, stripes), *_about_light(frames, noise)]
-    glow = _gather_glow(frames, stripes, axis, noise, near)
+    glow = _gather_glow(frames, stripes, axis, noise, near, clear)
     if glow.shape[1] >= _FEWEST:
         remarks += _about_glow(glow, [frame.index for frame in frames if _is_like(frame, frames)])
     return tuple(remarks)
@@ -84,14 +91,19 @@ def _about_light(frames: Sequence[Frame], noise: Noise) -> list[str]:
 
 
 def _gather_glow(
-    frames: Sequence[Frame], stripes: Sequence[Stripe], axis: Axis, noise: Noise, near: int
+    frames: Sequence[Frame],
+    stripes: Sequence[Stripe],
+    axis: Axis,
+    noise: Noise,
+    near: int,
+    clear: float,
 ) -> Levels:
     """Give the glow of frames with the same rows, where all show it and it is bright enough."""
     levels = []
     for frame, stripe in zip(frames, stripes, strict=True):
         if _is_like(frame, frames):
             lines = ScanLines.of(frame, axis, binning=1, white=noise.white)
-            behind = is_behind(lines, stripe, near)
+            behind = is_behind(lines, stripe, near, clear)
             levels.append(np.where(behind, np.nan, average_blocks(lines, noise)).ravel())
     stack = np.stack(levels)
     shown = np.isfinite(stack).sum(axis=0) >= max(2, len(stack) // 2)

@@ -51,7 +51,7 @@ def learn_stripe_shape(
         min_score: Score from which a ridge is looked at.
 
     Returns:
-        The shape; that of a stripe a pixel wide where the frames show none.
+        The shape; a narrow one where the frames show no stripe.
     """
     learner = _Learner(axis, noise, markov, min_score)
     width = learner.measure_width(frames)
@@ -87,7 +87,9 @@ class _Learner:
         """
         few = frames[:: max(len(frames) // 6, 1)]
         counts, widths = [], []
-        for binning in _BINNINGS:
+        length = frames[0].image.shape["yx".index(self.axis)]
+        binnings = [binning for binning in _BINNINGS if 3 * binning <= length] or [1]
+        for binning in binnings:
             matched = MatchedFilter.of(_FIRST_WIDTH, self.noise.averaged(binning))
             count, measured = 0, [np.zeros(0)]
             for frame in few:

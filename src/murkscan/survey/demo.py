@@ -119,7 +119,7 @@ def _scan(
         progress=progress,
     )
     points = project.load_cloud().points
-    compared = points[:: max(len(points) // _COMPARED, 1)]
+    compared = points[:: -(-len(points) // _COMPARED) or 1]
     truth = load_mesh(out / "recording" / "truth" / "mesh.ply")
     errors = Errors.from_distances(distance_to_mesh(compared, truth, within=FALSE))
     return Compared(name, project, errors)
