@@ -277,8 +277,6 @@ as much as they scatter, which is too narrow: neighbouring points err together, 
 than others since it joins them. The rig is exact here: its covariance would widen intervals by the
 common part.
 
-What misses has a cause: `murk` joins centres over five frames as if the stripe moved evenly, which
-flattens a sphere by some hundredths of a millimetre everywhere alike, and no residual shows that.
 Gray gravity's error depends on where in its pixel the stripe lies, and hardly changes over a small
 flat tread: a plane fitted there is off as a whole.""",
     )
