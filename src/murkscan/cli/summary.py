@@ -28,10 +28,12 @@ def print_remarks(extracted: dict[str, Any]) -> None:
         print(f"  note: {remark}")
     if water := extracted.get("attenuation"):
         low, high = water["between_per_m"]
-        print(
-            f"  water: the glow fades by {water['effective_per_m']:.2g} per metre, so the beam "
-            f"attenuation lies between {low:.2g} and {high:.2g} per metre"
+        so = (
+            f"so the beam attenuation lies between {low:.2g} and {high:.2g} per metre"
+            if low > 0.1 * high
+            else "and scatters too much to tell the beam attenuation"
         )
+        print(f"  water: the glow fades by {water['effective_per_m']:.2g} per metre, {so}")
 
 
 def print_skips(skips: list[tuple[int, int, str]]) -> None:

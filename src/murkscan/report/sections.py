@@ -191,10 +191,10 @@ def _murk(recorded: Recorded) -> str:
     water = recorded.attenuation
     if water is None:
         return "not told by the glow"
-    return (
-        f"the glow fades by {water.effective:.2g} per metre; beam attenuation between "
-        f"{water.low:.2g} and {water.high:.2g} per metre"
-    )
+    fades = f"the glow fades by {water.effective:.2g} per metre"
+    if not water.is_telling:
+        return f"{fades}; the water scatters too much to tell its beam attenuation"
+    return f"{fades}; beam attenuation between {water.low:.2g} and {water.high:.2g} per metre"
 
 
 def _spread(value: float | None, unit: str) -> str:

@@ -54,6 +54,11 @@ class Attenuation:
     high: float
     """Ends of an interval that holds the water's beam attenuation c [1/m]."""
 
+    @property
+    def is_telling(self) -> bool:
+        """Tell whether the interval says more than that the water is murky."""
+        return self.low > 0.1 * self.high
+
 
 @dataclass(frozen=True)
 class Background:
