@@ -282,7 +282,7 @@ def test_a_loss_across_parts_is_counted_once(halo):
 
 def test_the_demo_s_model_lies_on_the_true_hull_where_the_paper_s_does_not(tmp_path):
     ours, paper = run_demo(tmp_path)
-    assert ours.errors.count > 19_000
+    assert ours.errors.count > 15_000
     # A pixel is 2.5 mm of depth there, and the rows of a field lie two pixels apart.
     assert ours.errors.rms < 0.5e-3
     assert ours.errors.false < 0.005 * ours.errors.count
