@@ -286,7 +286,9 @@ def test_the_demo_s_model_lies_on_the_true_hull_where_the_paper_s_does_not(tmp_p
     # A pixel is 2.5 mm of depth there, and the rows of a field lie two pixels apart.
     assert ours.errors.rms < 0.5e-3
     assert ours.errors.false < 0.005 * ours.errors.count
-    assert paper.errors.false > 0.1 * paper.errors.count
+    # Most of what the threshold takes for the stripe is taken out of its cloud as outliers.
+    assert paper.errors.false > 0.01 * paper.errors.count
+    assert paper.errors.rms > 3 * ours.errors.rms
     assert "the paper" in (tmp_path / "index.html").read_text("utf-8")
 
 
