@@ -81,10 +81,10 @@ def fit_stripes(
     `noise` holds the variance's fixed part, its part per level, its least, and the level of white;
     `shape` the core's width [px] and its prior's spread (of the logarithm), the skirt's share of
     the height and its prior's spread; `skirts` its profile in each window.
-    Gives centre, its standard deviation, height, core's width, skirt's share, and the mean square
-    of the weighted residuals (n 6); NaN where none fits.
+    Gives centre, its standard deviation, height, core's width and skirt's share (n 5); NaN where
+    none fits.
     """
-    found = np.full((len(lines), 6), np.nan)
+    found = np.full((len(lines), 5), np.nan)
     p, step = np.empty(_SIZE), np.empty(_SIZE)
     matrix = np.empty((_SIZE, _SIZE))
     half = skirts.shape[1] // 2
@@ -96,10 +96,10 @@ def fit_stripes(
         if np.sum(scan >= noise[3]) > _GLARE * shape[0] + 1.0:
             continue
         _begin(scan, middle - low, starts[i] - middle, shape, p)
-        misfit, variance = 0.0, -1.0
+        variance = -1.0
         for turn in range(_MOST_STEPS):
-            misfit = _normal_equations(scan, skirt, middle - low, p, noise, shape, matrix, step)
-            if misfit < 0.0 or not solve(matrix, step):
+            is_enough = _normal_equations(scan, skirt, middle - low, p, noise, shape, matrix, step)
+            if not is_enough or not solve(matrix, step):
                 variance = -1.0
                 break
             variance = 1.0
@@ -110,7 +110,7 @@ def fit_stripes(
             variance = first_variance(matrix)
         if variance > 0.0 and abs(p[0]) < 2.0 + shape[0]:
             found[i, 0], found[i, 1], found[i, 2] = middle + p[0], np.sqrt(variance), p[1]
-            found[i, 3], found[i, 4], found[i, 5] = np.exp(p[2]), p[3], misfit
+            found[i, 3], found[i, 4] = np.exp(p[2]), p[3]
     return found
 
 
@@ -143,16 +143,16 @@ def _take_step(p: np.ndarray, step: np.ndarray) -> None:
 def _normal_equations(
     scan: np.ndarray, skirt: np.ndarray, middle: int, p: np.ndarray, noise: np.ndarray,
     shape: np.ndarray, matrix: np.ndarray, right: np.ndarray,
-) -> float:  # fmt: skip
+) -> bool:  # fmt: skip
     """Fill the normal equations at p, with the priors; white pixels are left out.
 
-    Gives the mean square of the weighted residuals, negative where too few pixels are left.
+    False where too few pixels are left.
     """
     matrix[:] = 0.0
     right[:] = 0.0
     slopes = np.empty(_SIZE)
     width = np.exp(p[2])
-    total, count = 0.0, 0
+    count = 0
     for v in range(len(scan)):
         level = float(scan[v])
         if level >= noise[3]:
@@ -168,14 +168,13 @@ def _normal_equations(
         model = p[1] * slopes[1] + p[4] + p[5] * along + p[6] * slopes[6]
         weight = 1.0 / max(noise[0] + noise[1] * min(max(model, 0.0), noise[3]), noise[2])
         off = level - model
-        total += off * off * weight
         count += 1
         for a in range(_SIZE):
             right[a] += weight * slopes[a] * off
             for b in range(a + 1):
                 matrix[a, b] += weight * slopes[a] * slopes[b]
     _add_priors(p, shape, matrix, right)
-    return total / max(count - _FEWEST, 1) if count >= _FEWEST else -1.0
+    return count >= _FEWEST
 
 
 @njit(cache=True, nogil=True)

@@ -78,7 +78,7 @@ def fit_ridges(
     noise: Noise,
     shape: StripeShape,
     tightness: Tightness = Tightness(),
-) -> Float[np.ndarray, "n 6"]:
+) -> Float[np.ndarray, "n 5"]:
     """Fit core, skirt and a curved background around each ridge, weighted by the noise.
 
     Args:
@@ -91,8 +91,7 @@ def fit_ridges(
 
     Returns:
         Position and its standard deviation [px of `lines`], the core's height [grey levels] and
-        width [px of `lines`], the skirt's share, and the mean square of the weighted residuals;
-        NaN where nothing fits.
+        width [px of `lines`], and the skirt's share; NaN where nothing fits.
     """
     half = max(6, math.ceil(5 * shape.width) + 3)
     law = np.array([noise.fixed, noise.gain, noise.least, noise.white])
@@ -110,7 +109,7 @@ def find_centres(
     line, which = np.nonzero(posterior > 0.5)
     start = ridges.positions[line, which]
     found = fit_ridges(ridges.lines, line, start, noise=noise, shape=shape)
-    lines, (position, sigma, height, _, skirt, _) = ridges.lines, found.T
+    lines, (position, sigma, height, _, skirt) = ridges.lines, found.T
     fits = np.isfinite(position)
     spread = lines.stretch * np.hypot(shape.misfit * sigma, shape.floor)
     full, signal = lines.as_full_frame(position), height * (1 + skirt)

@@ -160,7 +160,7 @@ class _Fits:
         return len(self.width)
 
     @classmethod
-    def of(cls, lines: Indices, found: Float[np.ndarray, "n 6"], height: Scalars) -> "_Fits":
+    def of(cls, lines: Indices, found: Float[np.ndarray, "n 5"], height: Scalars) -> "_Fits":
         """Take what fits; a score above 50 is trusted no more than 50."""
         fits = np.isfinite(found[:, 0])
         clear = fits & (height > 6.0)
