@@ -24,16 +24,17 @@ def print_result(stage: str, result: dict[str, Any], where: Path) -> None:
 
 def print_remarks(extracted: dict[str, Any]) -> None:
     """Say what is odd about the recording, and how murky the water was."""
+    from ..survey.recorded import attenuation_of
+
     for remark in extracted.get("remarks", []):
         print(f"  note: {remark}")
-    if water := extracted.get("attenuation"):
-        low, high = water["between_per_m"]
+    if water := attenuation_of(extracted):
         so = (
-            f"so the beam attenuation lies between {low:.2g} and {high:.2g} per metre"
-            if low > 0.1 * high
+            f"so the beam attenuation lies between {water.low:.2g} and {water.high:.2g} per metre"
+            if water.is_telling
             else "and scatters too much to tell the beam attenuation"
         )
-        print(f"  water: the glow fades by {water['effective_per_m']:.2g} per metre, {so}")
+        print(f"  water: the glow fades by {water.effective:.2g} per metre, {so}")
 
 
 def print_skips(skips: list[tuple[int, int, str]]) -> None:

@@ -31,7 +31,7 @@ def tell_recording(project: Project, scan: dict[str, Any]) -> Recorded:
         is_timed=recording["is_timed"],
         skips=[tuple(skip) for skip in counts["skips"]],
         remarks=counts.get("remarks", []),
-        attenuation=_attenuation(counts),
+        attenuation=attenuation_of(counts),
         path=recording["path"],
         began=when_began(project.load_frame_times(), motion),
         written=_moment(recording.get("written")),
@@ -42,7 +42,8 @@ def tell_recording(project: Project, scan: dict[str, Any]) -> Recorded:
     )
 
 
-def _attenuation(extracted: dict[str, Any]) -> Attenuation | None:
+def attenuation_of(extracted: dict[str, Any]) -> Attenuation | None:
+    """Read how murky the water was from what the extract stage said."""
     water = extracted.get("attenuation")
     return water and Attenuation(water["effective_per_m"], *water["between_per_m"])
 
