@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from murkscan.report import CAUSES, SurfaceDirections, SwathLayout, map_coverage
+from murkscan.report import CAUSES, Reach, SurfaceDirections, SwathLayout, map_coverage
 from murkscan.types.frame_times import FrameTimes
 from murkscan.types.profile import Profile
 from murkscan.types.trajectory import Trajectory
@@ -13,6 +13,8 @@ STEP, PITCH, LINES, FRAMES = 0.001, 0.001, 100, 200
 """A wall at half a metre: a point every millimetre both ways."""
 WHOLE = STEP * (FRAMES - 1) * PITCH * LINES
 """Area between its first and its last profile [m²]."""
+BRIGHT = Reach(np.array([0.4, 1.0]), np.array([100.0, 80.0]), least=2.0)
+"""Light enough at every range of these scans."""
 
 
 def _scan(kept=None, *, frames=FRAMES, depth=0.5, axis="y", posterior=1.0):
@@ -56,7 +58,7 @@ def _cover(profiles, *, read=None, trajectory=None, axis="y", fields=1):
         SurfaceDirections.from_trajectory(trajectory, axis),
     )
     profiles = profiles if isinstance(profiles, list) else [profiles]
-    return map_coverage(profiles, layout, wanted=PITCH, spacing=STEP)
+    return map_coverage(profiles, layout, reach=BRIGHT, wanted=PITCH, spacing=STEP)
 
 
 def _only(coverage):
@@ -107,14 +109,14 @@ def test_a_patch_from_which_no_light_came_back_is_one():
         return (abs(frame - 100) > 20) | (abs(line - 50) > 10)
 
     cause, area = _only(_cover(_scan(kept)))
-    assert cause == "too_far"
+    assert cause == "too_dark"
     # 21 scan lines, from the last frame before the patch to the first after it.
     assert area == pytest.approx(21 * PITCH * 42 * STEP)
 
 
 def test_a_band_that_no_frame_shows_is_missing_too():
     cause, area = _only(_cover(_scan(lambda frame, line: abs(line - 50) > 10)))
-    assert cause == "too_far"
+    assert cause == "too_dark"
     assert area == pytest.approx(21 * PITCH * (FRAMES - 1) * STEP)
 
 

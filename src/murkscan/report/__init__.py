@@ -8,6 +8,7 @@ from .directions import SurfaceDirections as SurfaceDirections
 from .histogram import Histogram as Histogram
 from .html import as_html as as_html
 from .plain import as_json as as_json
+from .reach import Reach as Reach
 from .recorded import Model as Model
 from .recorded import Recorded as Recorded
 from .recorded import Shown as Shown

@@ -10,6 +10,7 @@ from ..types.arrays import Scalars
 from ..types.profile import Profile
 from .coverage_cells import CellSums, gather_cells
 from .directions import SurfaceDirections
+from .reach import Reach
 from .strips import cut_strips
 from .swath import CAUSES, COVERED, Swath
 from .swath_layout import SwathLayout
@@ -42,6 +43,8 @@ class Coverage:
     """Area of each cell that is covered, then that which is missing by each cause [m²]."""
     total: Scalars
     """The same of the whole scan [m²]."""
+    reach: Reach
+    """How far the light went: by it what is too far is told from what is too dark."""
 
     def state(self) -> Int[np.ndarray, "h w"]:
         """Give what most of each cell is: 0 covered, 1 and on the cause, -1 where nothing is."""
@@ -65,7 +68,12 @@ class Coverage:
 
 
 def map_coverage(
-    profiles: Iterable[Profile], layout: SwathLayout, *, wanted: float, spacing: float
+    profiles: Iterable[Profile],
+    layout: SwathLayout,
+    *,
+    reach: Reach,
+    wanted: float,
+    spacing: float,
 ) -> Coverage | None:
     """Map what the scan has and what it misses between its points; None without neighbours.
 
@@ -76,6 +84,7 @@ def map_coverage(
     Args:
         profiles: The points, in parts of whole frames in order; each is looked at once.
         layout: How they lie on frames and scan lines.
+        reach: How far the light went.
         wanted: Wanted spacing of the points [m].
         spacing: The larger of the usual spacings along and across [m].
     """
@@ -89,9 +98,11 @@ def map_coverage(
         num_lit += len(later.lit)
         pitch = later.pitch() or pitch
         both = later.append_to(before)
-        strips = cut_strips(both, hole=hole, pitch=pitch)
+        strips = cut_strips(both, hole=hole, pitch=pitch, reach=reach)
         is_point = later.cause == COVERED
         sums.append(CellSums.from_part(later.along[is_point], later.across[is_point], strips, cell))
         before = both.last_of_each_line()
     cells = gather_cells(sums, edge=cell)
-    return None if cells is None else Coverage(layout.directions, wanted, hole, cell, *cells)
+    if cells is None:
+        return None
+    return Coverage(layout.directions, wanted, hole, cell, *cells, reach=reach)

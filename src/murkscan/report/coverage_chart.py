@@ -7,21 +7,30 @@ from jaxtyping import Float
 
 from ..page import INK, Figure, as_svg, new_figure
 from .coverage import Coverage
-from .swath import CAUSES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _FEW, _MANY = (0.80, 0.91, 0.86), (0.13, 0.53, 0.39)
 """Covered cells with few points and with as many as usual."""
-_COLOURS = dict(zip(CAUSES, ("#7b5ea7", "#4d4d4d", "#e69f00", "#0072b2", "#d1495b"), strict=True))
+_COLOURS = {
+    "no_stripe": "#7b5ea7",
+    "unreadable": "#4d4d4d",
+    "too_fast": "#e69f00",
+    "too_far": "#0072b2",
+    "occluded": "#d1495b",
+    "too_dark": "#6b4423",
+    "far_or_dark": "#8cb8d9",
+}
 """Told apart by those who see colours differently, and on white and on black."""
 NAMES = {
     "no_stripe": "no stripe in the frame",
     "unreadable": "frame could not be read",
     "too_fast": "too fast: profiles too far apart",
-    "too_far": "no light came back: too far, too dark, or nothing there",
+    "too_far": "too far for this water and light",
     "occluded": "hidden behind an edge",
+    "too_dark": "no light came back from near enough: too dark, too steep, or nothing there",
+    "far_or_dark": "no light came back: too far or too dark, which cannot be told here",
 }
 _WIDTH = 9.6
 """Width of the figure [inch]: over the page's whole width its text is as high as elsewhere."""
@@ -87,7 +96,7 @@ def _add_legend(coverage: Coverage, axes: "Axes") -> None:
     axes.figure.legend(
         handles=patches,
         loc="outside lower left",
-        ncols=3,
+        ncols=2,
         labelcolor=INK,
         frameon=False,
         handlelength=1.0,

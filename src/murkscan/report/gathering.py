@@ -18,7 +18,7 @@ from .spacing import spacing_across, spacing_along
 from .timeline import FrameStatistics, frame_statistics
 from .trust import Trust, judge_trust
 
-_COLUMNS = ("signal", "depth", "sigma", "along", "across")
+_COLUMNS = ("signal", "depth", "range", "sigma", "along", "across")
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +48,7 @@ def gather(profiles: Iterable[Profile], axis: Axis, trajectory: Trajectory | Non
         belief += Belief.from_posterior(profile.posterior)
         kept["signal"].add(profile.signal)
         kept["depth"].add(profile.points[:, 2])
+        kept["range"].add(np.linalg.norm(profile.points, axis=1))
         kept["sigma"].add(profile.sigma)
         kept["along"].add(spacing_along(profile, axis))
         if trajectory is not None:

@@ -12,8 +12,8 @@ from .speed import Speed
 from .summary import ScanSummary
 from .swath import CAUSES
 
-_LETTERS = dict(zip(("nothing", "covered", *CAUSES), ".cnuvdh", strict=True))
-"""One letter a state of a cell: no stripe, unreadable, speed (v), distance, hidden."""
+_LETTERS = dict(zip(("nothing", "covered", *CAUSES), ".cnuvdhbw", strict=True))
+"""One letter a state of a cell: no stripe, unreadable, speed (v), distance, hidden, black, weak."""
 
 
 def as_plain_verdicts(summary: ScanSummary) -> dict[str, Any]:
@@ -54,6 +54,12 @@ def _coverage(coverage: Coverage) -> dict[str, Any]:
             "all": round_off(coverage.mapped),
             "covered": round_off(coverage.covered),
             **{cause: round_off(area) for cause, area in coverage.missing.items()},
+        },
+        "reach": {
+            "least_signal_grey_levels": round_off(coverage.reach.least),
+            "too_far_from_mm": _perhaps(coverage.reach.farthest, 1e3),
+            "range_mm": as_list(1e3 * coverage.reach.ranges),
+            "usual_signal_grey_levels": as_list(coverage.reach.usual),
         },
         "directions": {
             "along_motion": as_list(directions.along),

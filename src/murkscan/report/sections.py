@@ -8,6 +8,7 @@ from .belief import Belief, name_classes
 from .calibrated import CalibrationStep
 from .coverage import Coverage
 from .coverage_chart import NAMES, coverage_chart
+from .reach import FAINT, PLAIN
 from .recorded import Recorded
 from .speed import Speed
 from .summary import ScanSummary
@@ -15,6 +16,8 @@ from .words import rig_rows
 
 _OLD = 365
 """Days after which a calibration is called old."""
+_NO_LIGHT = ("too_far", "too_dark", "far_or_dark")
+"""Causes of which the range decides."""
 _ENOUGH = 1.005
 """A speed as much above the highest is still called right: half a percent is no one's concern."""
 
@@ -55,6 +58,7 @@ def coverage_blocks(coverage: Coverage) -> list[Block]:
     )
     return [
         Note(text),
+        *_reach_notes(coverage),
         coverage_chart(coverage),
         Table(rows, head=("", "area [m²]", "share [%]")),
     ]
@@ -123,6 +127,22 @@ def repeat_blocks(recorded: Recorded) -> list[Block]:
         Note("What was typed; with the same recording, rig file and version it gives the same."),
         Code(recorded.commands),
     ]
+
+
+def _reach_notes(coverage: Coverage) -> list[Block]:
+    """Say how far the light went, and what that tells of gaps from which none came back."""
+    if not any(coverage.missing[cause] > 0 for cause in _NO_LIGHT):
+        return []
+    far, least = coverage.reach.farthest, coverage.reach.least
+    beyond = "nowhere in this scan" if far is None else f"in this scan from {1e3 * far:.0f} mm on"
+    text = (
+        "Where no light came back, the range of the gap's neighbours tells why. Stripes of this "
+        f"scan below {least:.3g} grey levels are not surely found. Too far is where the usual "
+        f"stripe is less than {FAINT:g} times as strong, {beyond}. Near enough is where it is more "
+        f"than {PLAIN:g} times as strong: darker paint, a surface too steep, and nothing being "
+        "there cannot be told apart then; nor can far and dark in between."
+    )
+    return [Note(text)]
 
 
 def _speed_verdict(speed: Speed) -> list[Block]:

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..types.arrays import Indices, Scalars
-from .swath import COVERED, NO_STRIPE, NOTHING, OCCLUDED, TOO_FAR, TOO_FAST, UNREADABLE, Swath
+from .reach import Reach
+from .swath import COVERED, NO_LIGHT, NO_STRIPE, NOTHING, OCCLUDED, TOO_FAST, UNREADABLE, Swath
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,13 +25,14 @@ class Strips:
     """COVERED, or why it is missing."""
 
 
-def cut_strips(swath: Swath, *, hole: float, pitch: float) -> Strips:
+def cut_strips(swath: Swath, *, hole: float, pitch: float, reach: Reach) -> Strips:
     """Join each sample to the next one of its scan line, and tell why there is a hole.
 
     Args:
         swath: Samples, rows in order of time.
         hole: Distance along the motion of neighbours above which there is a hole between them [m].
         pitch: Distance of neighbouring scan lines for each metre of depth.
+        reach: How far the light went.
     """
     line, row = np.nonzero((swath.cause != NOTHING).T)
     is_pair = np.diff(line) == 0
@@ -39,12 +41,14 @@ def cut_strips(swath: Swath, *, hole: float, pitch: float) -> Strips:
     step = swath.along[two] - swath.along[one]
     # Where the surface comes nearer, the stripe may fall back: nothing is missing then.
     length = np.maximum(step * np.where(way < 0, -1, 1), 0)
+    cause = _causes(swath, one, two, length, way, hole)
+    far = (swath.range[one] + swath.range[two]) / 2
     return Strips(
         start=np.minimum(swath.along[one], swath.along[two]),
         length=length,
         across=(swath.across[one] + swath.across[two]) / 2,
         width=pitch * (swath.depth[one] + swath.depth[two]) / 2,
-        cause=_causes(swath, one, two, length, way, hole),
+        cause=np.where(cause == NO_LIGHT, reach.tell(far), cause),
     )
 
 
@@ -56,6 +60,8 @@ def _causes(
 ) -> Indices:
     """Tell why each strip is missing; the first that applies, from the surest to the least."""
     inside = np.maximum(swath.cause[one], swath.cause[two]).astype(np.int64)
+    is_hidden = (swath.cause[one] == OCCLUDED) | (swath.cause[two] == OCCLUDED)
+    inside[is_hidden] = OCCLUDED
     frames, read, lit = (
         getattr(swath, name)[two] - getattr(swath, name)[one] for name in ("frame", "read", "lit")
     )
@@ -72,6 +78,6 @@ def _causes(
         is_steep,
         between_lit > 0,
     ]
-    results = [COVERED, inside, TOO_FAST, UNREADABLE, NO_STRIPE, OCCLUDED, TOO_FAR]
+    results = [COVERED, inside, TOO_FAST, UNREADABLE, NO_STRIPE, OCCLUDED, NO_LIGHT]
     # What is left are neighbours in time on a surface that slopes away: slower would close it.
     return np.select(rules, results, TOO_FAST)

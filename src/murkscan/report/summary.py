@@ -17,6 +17,7 @@ from .coverage import Coverage, map_coverage
 from .directions import SurfaceDirections
 from .gathering import gather, measure_cloud
 from .histogram import Histogram
+from .reach import Reach
 from .recorded import Model, Recorded, Shown
 from .speed import Speed, judge_speed
 from .spread import Spread
@@ -61,6 +62,8 @@ class ScanSummary:
     signals: Histogram
     sigmas: Histogram
     """How signal [grey levels] and sigma [m] are spread over the points."""
+    reach: Reach
+    """How the stripe fades with range."""
     belief: Belief
     """How sure the extractor was of the points."""
     speed: Speed | None
@@ -93,6 +96,7 @@ def summarise(
     num_outliers: int = 0,
     mesh_size: tuple[int, int] = (0, 0),
     wanted: float | None = None,
+    noise: float = 0.0,
     settings: Mapping[str, Any],
     versions: Mapping[str, str],
     durations: Mapping[str, float] | None = None,
@@ -111,13 +115,16 @@ def summarise(
         num_outliers: Points that were taken out of the cloud.
         mesh_size: Vertices and triangles of the surface.
         wanted: Wanted spacing of the points [m]; that along the stripe unless given.
+        noise: Standard deviation of a pixel [grey levels], 0 where it is not known.
         settings: Every setting, as plain values; may be nested.
         versions: Version of each program.
         durations: Time that each stage took [s].
         pictures: What to show, the best first.
     """
     gathered = gather(profiles, rig.lasers[laser].axis, trajectory)
-    spreads = {name: Spread.from_values(values) for name, values in gathered.values.items()}
+    values = dict(gathered.values)
+    reach = Reach.from_points(values.pop("range"), values["signal"], noise=noise)
+    spreads = {name: Spread.from_values(numbers) for name, numbers in values.items()}
     model, trust = measure_cloud(cloud, rig, num_outliers, mesh_size)
     needed = wanted if wanted is not None else spreads["along"].median
     return ScanSummary(
@@ -133,8 +140,9 @@ def summarise(
         model=model,
         trust=trust,
         duration=float(np.ptp(frames.time)) if len(frames) else 0.0,
-        signals=Histogram.from_values(gathered.values["signal"]),
-        sigmas=Histogram.from_ratios(gathered.values["sigma"]),
+        signals=Histogram.from_values(values["signal"]),
+        sigmas=Histogram.from_ratios(values["sigma"]),
+        reach=reach,
         belief=gathered.belief,
         speed=None
         if trajectory is None
@@ -173,5 +181,5 @@ def with_coverage(
         SurfaceDirections.from_trajectory(trajectory, axis),
     )
     spacing = max(summary.along.median or 0.0, summary.across.median or 0.0)
-    coverage = map_coverage(profiles, layout, wanted=wanted, spacing=spacing)
+    coverage = map_coverage(profiles, layout, reach=summary.reach, wanted=wanted, spacing=spacing)
     return replace(summary, coverage=coverage)

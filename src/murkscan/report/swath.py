@@ -1,22 +1,32 @@
 """The samples of a scan, frame by scan line, with the gaps inside each frame filled and named."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from jaxtyping import Float, Int, UInt8
 
-from ..types.arrays import Indices, Points, Scalars
+from ..types.arrays import Indices, Scalars
 
 Grid = Float[np.ndarray, "h w"]
 Numbers = Int[np.ndarray, "h w"]
 Causes = UInt8[np.ndarray, "h w"]
 
-CAUSES = ("no_stripe", "unreadable", "too_fast", "too_far", "occluded")
+CAUSES = (
+    *("no_stripe", "unreadable", "too_fast", "too_far", "occluded"),
+    *("too_dark", "far_or_dark"),
+)
 """Why a piece of surface is missing."""
 COVERED = 0
-NO_STRIPE, UNREADABLE, TOO_FAST, TOO_FAR, OCCLUDED = range(1, len(CAUSES) + 1)
+NO_STRIPE, UNREADABLE, TOO_FAST, TOO_FAR, OCCLUDED, TOO_DARK, FAR_OR_DARK = range(
+    1, len(CAUSES) + 1
+)
+NO_LIGHT = 254
+"""Where too little light came back, before the range tells why."""
 NOTHING = 255
 """Where no profile says that there is a surface."""
+_BESIDE = 4
+"""Scan lines over which the slope beside a gap is taken."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +41,8 @@ class Swath:
     """Place towards the scanner [m]."""
     depth: Grid
     """z in the camera frame [m]."""
+    range: Grid
+    """Distance from the camera [m]."""
     cause: Causes
     """COVERED where a point is, why one is missing inside a frame's stripe, or NOTHING."""
     frame: Numbers
@@ -73,25 +85,26 @@ class Swath:
 
 
 def put_on_grids(
-    places: Points, depth: Scalars, row: Indices, line: Indices, shape: tuple[int, int]
-) -> tuple[Grid, Grid, Grid, Grid]:
-    """Put samples on their rows and scan lines: along, across, height, depth; NaN elsewhere."""
+    columns: Sequence[Scalars], row: Indices, line: Indices, shape: tuple[int, int]
+) -> list[Grid]:
+    """Put columns of samples on their rows and scan lines, NaN elsewhere."""
     grids = []
-    for values in (*places.T, depth):
+    for values in columns:
         grid = np.full(shape, np.nan)
         grid[row, line] = values
         grids.append(grid)
-    return grids[0], grids[1], grids[2], grids[3]
+    return grids
 
 
-def fill_rows(grids: tuple[Grid, Grid, Grid, Grid], *, hole: float) -> tuple[list[Grid], Causes]:
+def fill_rows(grids: Sequence[Grid], *, hole: float) -> tuple[list[Grid], Causes]:
     """Fill the gaps between the points of each row, and say why they are there.
 
     A gap counts as covered up to the length of a hole. Above that it is hidden behind an edge where
-    the surface jumps by more than the gap is wide; otherwise too little light came back.
+    the surface jumps by more than the gap is wide, and does not rise as steeply beside the gap;
+    otherwise too little light came back.
 
     Args:
-        grids: Along, across, height and depth [m].
+        grids: Along, across and height [m], and others that are filled alike.
         hole: Distance of neighbours above which there is a hole between them [m].
     """
     is_point = np.isfinite(grids[0])
@@ -107,8 +120,20 @@ def fill_rows(grids: tuple[Grid, Grid, Grid, Grid], *, hole: float) -> tuple[lis
     filled = [grid.copy() for grid in grids]
     for grid, step in zip(filled, steps, strict=True):
         grid[rows, gaps] = grid[rows, left] + share * step
+    slope = (_slopes(grids, rows, left, -1) + _slopes(grids, rows, right, 1)) / 2
     width, jump = np.abs(steps[1]), np.abs(steps[2])
+    is_jump = (jump > width) & (np.abs(steps[2] - slope * steps[1]) > jump / 2)
     cause[rows, gaps] = np.where(
-        np.hypot(steps[0], width) <= hole, COVERED, np.where(jump > width, OCCLUDED, TOO_FAR)
+        np.hypot(steps[0], width) <= hole, COVERED, np.where(is_jump, OCCLUDED, NO_LIGHT)
     )
     return filled, cause
+
+
+def _slopes(grids: Sequence[Grid], rows: Indices, at: Indices, way: int) -> Scalars:
+    """Give how steeply the surface rises across, on one side of points; 0 where nothing says."""
+    _, across, height, *_ = grids
+    other = np.clip(at + way * _BESIDE, 0, across.shape[1] - 1)
+    run = across[rows, other] - across[rows, at]
+    rise = height[rows, other] - height[rows, at]
+    is_known = np.isfinite(run) & (run != 0)
+    return np.where(is_known, rise / np.where(is_known, run, 1.0), 0.0)

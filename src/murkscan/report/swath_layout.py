@@ -67,16 +67,16 @@ class SwathLayout:
         row = np.searchsorted(numbers, profile.frame)
         to_surface = self.directions.as_matrix().T
         places = self.trajectory.transform(profile.points, profile.time) @ to_surface
-        grids = put_on_grids(
-            places, profile.points[:, 2], row, np.clip(line, 0, lines - 1), (len(numbers), lines)
-        )
-        (along, across, height, depth), cause = fill_rows(grids, hole=hole)
+        ranges = np.linalg.norm(profile.points, axis=1)
+        columns = [*places.T, profile.points[:, 2], ranges]
+        grids = put_on_grids(columns, row, np.clip(line, 0, lines - 1), (len(numbers), lines))
+        (along, across, height, depth, far), cause = fill_rows(grids, hole=hole)
         read = np.searchsorted(self.frames.frame, numbers)
         times = self.frames.time[np.minimum(read, len(self.frames) - 1)]
         camera = self.trajectory.at(times).positions @ self.directions.along
         ones = np.ones((1, lines), np.int64)
         return Swath(
-            along, across, height, depth, cause,
+            along, across, height, depth, far, cause,
             frame=numbers.astype(np.int64)[:, None] * ones,
             read=read[:, None] * ones,
             lit=np.arange(len(numbers))[:, None] * ones,

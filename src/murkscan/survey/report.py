@@ -7,6 +7,7 @@ import time
 from typing import Any
 
 from ..errors import InputError
+from ..io.json_files import load_json
 from ..project import STAGES, Project
 from ..report import ScanSummary, Shown, as_html, as_json, summarise, with_coverage
 from .progress import Progress, silent
@@ -79,6 +80,7 @@ def _summarise(project: Project, spacing: float | None) -> ScanSummary:
         num_outliers=stages["cloud"].counts()["outliers"],
         mesh_size=(mesh["vertices"], mesh["faces"]),
         wanted=spacing,
+        noise=_noise(project),
         settings={name: stage.key["settings"] for name, stage in stages.items()},
         versions=scan["versions"],
         durations={name: stage.seconds() for name, stage in stages.items()},
@@ -86,6 +88,12 @@ def _summarise(project: Project, spacing: float | None) -> ScanSummary:
     )
     profiles = project.load_profile_parts()
     return with_coverage(summary, profiles, frames=frames, trajectory=trajectory)
+
+
+def _noise(project: Project) -> float:
+    """Give the noise of a pixel that the extractor has learnt [grey levels]; 0 if it kept none."""
+    file = project.finished("extract").folder / "background.json"
+    return float(load_json(file).get("noise", 0.0)) if file.exists() else 0.0
 
 
 def _pictures(project: Project) -> list[Shown]:
