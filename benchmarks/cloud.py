@@ -31,7 +31,8 @@ NOTE = f"""
 A curved wall, {LINES} points a profile, a profile a millimetre. `to LAZ` writes `cloud.ply` to
 `dive.laz` with all columns; `thinned` writes means over voxels of {VOXEL * 1e3:g} mm; both are what
 `murkscan cloud OUT --export` does. Each runs in a process of its own, whose largest resident memory
-is given. `linear` is the time a point in the largest cloud over that in the smallest.
+is given. Times are the processor's, of all threads, since the machine is shared. `linear` is the
+time a point in the largest cloud over that in the smallest.
 """
 
 
@@ -74,9 +75,9 @@ def work(root: Path, name: str) -> None:
     """Do one export in this process, and tell what it took."""
     voxel = VOXEL if name == "thinned" else None
     path = root / ("thin.ply" if voxel else "dive.laz")
-    start = time.perf_counter()
+    start = time.process_time()
     count = export_cloud(Project(root / "scan"), path, voxel=voxel)
-    seconds = time.perf_counter() - start
+    seconds = time.process_time() - start
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
     print(json.dumps({"seconds": seconds, "bytes": peak, "count": count}))
 
