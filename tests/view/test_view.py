@@ -9,6 +9,7 @@ from murkscan.mesh import GridMesh
 from murkscan.types.mesh import Mesh
 from murkscan.types.trajectory import Trajectory
 from murkscan.view import Depth, draw_pictures, render, standard_views
+from murkscan.view.values import SignedValues
 from murkscan.view.writing import round_down
 
 from ..scans import scan_cloud, sphere
@@ -112,6 +113,30 @@ def test_nearer_is_brighter_and_farther_is_bluer():
     assert near.sum() > far.sum()
     assert far[2] > far[1]
     assert near[1] > near[2]
+
+
+def test_a_deviation_towards_the_camera_is_red_and_red_is_on_top_of_the_bar():
+    mesh = box(0.4, 0.2, 0.1)
+    x = np.linspace(-0.2, 0.2, 81)
+    at = np.stack([np.tile(x, 41), np.repeat(x[20:61], 81), np.full(3321, 0.95)], axis=1)
+    values = SignedValues(at, np.where(at[:, 0] > 0, 1e-3, -1e-3))
+    picture = render(mesh, VIEWS["front"], colours=values, size=SIZE).astype(int)
+    redness = picture[..., 0] - picture[..., 2]
+    model = redness[:, : round(0.8 * SIZE[0])]
+    left, right = np.array_split(model, 2, axis=1)
+    assert left.min() < -50 < 50 < right.max()
+    # Where the colour bar stands; its ends are the strongest colours.
+    bar = redness[round(0.2 * SIZE[1]) : round(0.7 * SIZE[1]), round(0.886 * SIZE[0])]
+    assert bar[0] > 50 > -50 > bar[-1]
+
+
+def test_where_no_value_is_near_the_surface_is_grey():
+    at = np.stack([np.linspace(0, 0.1, 101), np.zeros(101), np.zeros(101)], axis=1)
+    values = SignedValues(at, np.full(101, 1e-3))
+    places = np.array([[0.05, 0.001, 0.0], [0.05, 0.5, 0.0]])
+    near, far = values.paint(places, np.ones(2, bool), values.legend(at))
+    assert near[0] > near[2] + 0.2
+    assert far[0] == far[1] == far[2]
 
 
 def test_the_back_of_a_surface_has_another_colour():

@@ -2,6 +2,7 @@
 
 import abc
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from jaxtyping import Float
@@ -24,6 +25,8 @@ class Legend:
     """Value at the colour map's end, in that unit."""
     colour_map: str
     """Its name in matplotlib."""
+    top: Literal["low", "high"] = "high"
+    """Which value stands on top of the colour bar: the low one for depths, which go down."""
 
 
 class AbstractColours(abc.ABC):

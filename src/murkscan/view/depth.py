@@ -34,7 +34,8 @@ class Depth(AbstractColours):
         low, high = np.percentile(surface @ np.array(self.forward) * 1e3, [_SHARE, 100 - _SHARE])
         # A level surface has no range: a tenth of a millimetre keeps its rounding out of sight.
         middle, half = (low + high) / 2, max((high - low) / 2, 0.05)
-        return Legend("depth [mm]", float(middle - half), float(middle + half), _COLOUR_MAP)
+        ends = float(middle - half), float(middle + half)
+        return Legend("depth [mm]", *ends, _COLOUR_MAP, top="low")
 
     def paint(self, points: Points, outside: Mask, legend: Legend | None) -> Colours:
         """Give each depth its colour; both sides of the surface look alike."""

@@ -10,12 +10,15 @@ from scipy.spatial import KDTree
 
 from ..types.arrays import Mask, Points, Scalars
 from .base import AbstractColours, Colours, Legend
+from .model import usual_spacing
 
 _COLOUR_MAP = "RdBu_r"
 _UNKNOWN = 0.62
 """Grey of places without a value."""
 _SHARE = 1.0
 """Percent of the values, by size, that may lie beyond the colours."""
+_REACH = 10.0
+"""Usual distances between neighbours beyond which a value says nothing of a place."""
 _LEAST = 0.05
 """Half the range of the colours [mm] below which rounding would be shown."""
 
@@ -44,10 +47,12 @@ class SignedValues(AbstractColours):
         return Legend(self.label, -half, half, _COLOUR_MAP)
 
     def paint(self, points: Points, outside: Mask, legend: Legend | None) -> Colours:
-        """Give each point the colour of the nearest value."""
+        """Give each point the colour of the nearest value, unless that is far away."""
         if legend is None:
             return np.full((len(points), 3), _UNKNOWN)
-        values = self.values[np.asarray(self._tree.query(points)[1])] * 1e3
+        most = _REACH * usual_spacing(self.at)
+        _, nearest = self._tree.query(points, distance_upper_bound=most)
+        values = np.append(self.values, np.nan)[nearest] * 1e3
         share = (values - legend.low) / (legend.high - legend.low)
         colours = mpl.colormaps[legend.colour_map](np.nan_to_num(share))[:, :3]
         return np.where(np.isfinite(values)[:, None], colours, _UNKNOWN)

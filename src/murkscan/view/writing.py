@@ -95,7 +95,8 @@ def _write_colours(figure: Figure, legend: Legend, points: float) -> None:
     axes = figure.add_axes((0.875, 0.27, 0.022, 0.58))
     colours = mpl.cm.ScalarMappable(Normalize(legend.low, legend.high), legend.colour_map)
     bar = figure.colorbar(colours, cax=axes)
-    bar.ax.invert_yaxis()
+    if legend.top == "low":
+        bar.ax.invert_yaxis()
     bar.ax.tick_params(labelsize=0.9 * points, colors=_INK, width=1.5, length=6)
     bar.ax.ticklabel_format(useOffset=False)
     bar.outline.set_visible(False)
