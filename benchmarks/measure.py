@@ -1,16 +1,13 @@
 """Spheres, cylinders and steps in murky water: do the stated 95 % intervals hold the truth?"""
 
-import argparse
 import inspect
-import json
-import tempfile
-import time
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import asdict, dataclass, replace
+from functools import partial
 
 import numpy as np
 import tomlkit
 from harness import Figure, tell
+from kept import Kept, make_in_pieces
 
 from murkscan.cli.choices import make_extractor
 from murkscan.cli.scan import scan as scan_command
@@ -196,35 +193,31 @@ def judge(
     )
 
 
-CASES = {"sphere, radius": Sphere, "cylinder, radius": Cylinder, "stairs, step": Stairs}
+Kind = type[Sphere] | type[Cylinder] | type[Stairs]
+CASES: dict[str, Kind] = {
+    "sphere, radius": Sphere,
+    "cylinder, radius": Cylinder,
+    "stairs, step": Stairs,
+}
 
 
-def measure_all(folder: Path, *, seconds: float) -> dict[str, dict[str, list[Case]]] | None:
-    """Measure what is not yet in the folder; None when the time is over before the end."""
-    start = time.monotonic()
+def measure_all(kept: Kept) -> dict[str, dict[str, list[Case]]]:
+    """Measure every seed of every object, with every finder."""
+    found: dict[str, dict[str, list[Case]]] = {f: {name: [] for name in CASES} for f in FINDERS}
     for seed in range(SEEDS):
         for name, kind in CASES.items():
-            files = {finder: folder / f"{finder} {name} {seed}.json" for finder in FINDERS}
-            if all(file.exists() for file in files.values()):
-                continue
-            if time.monotonic() - start > seconds:
-                return None
-            case = kind(seed)
-            scene = case.scene()
-            frames = [simulated.frame for simulated in simulate_frames(scene, 0, len(scene))]
-            for finder, file in files.items():
-                found = case.judge(scan(scene, finder, frames))
-                file.write_text(json.dumps(vars(found)), "utf-8")
-    return {
-        finder: {
-            name: [
-                Case(**json.loads((folder / f"{finder} {name} {seed}.json").read_text("utf-8")))
-                for seed in range(SEEDS)
-            ]
-            for name in CASES
-        }
-        for finder in FINDERS
-    }
+            by_finder = kept.take(f"{name} {seed}", partial(measure_seed, kind, seed))
+            for finder, values in by_finder.items():
+                found[finder][name].append(Case(**values))
+    return found
+
+
+def measure_seed(kind: Kind, seed: int) -> dict[str, dict[str, float]]:
+    """Give the fields of a `Case` for each finder."""
+    case = kind(seed)
+    scene = case.scene()
+    frames = [simulated.frame for simulated in simulate_frames(scene, 0, len(scene))]
+    return {finder: asdict(case.judge(scan(scene, finder, frames))) for finder in FINDERS}
 
 
 def figures_of(name: str, cases: list[Case]) -> list[Figure]:
@@ -245,17 +238,7 @@ def figures_of(name: str, cases: list[Case]) -> list[Figure]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--keep", type=Path, help="folder that keeps finished seeds")
-    parser.add_argument("--seconds", type=float, default=np.inf, help="stop after so long")
-    given = parser.parse_args()
-    with tempfile.TemporaryDirectory() as aside:
-        folder = given.keep or Path(aside)
-        folder.mkdir(parents=True, exist_ok=True)
-        cases = measure_all(folder, seconds=given.seconds)
-    if cases is None:
-        print("stopped; run the same command again to go on")
-        return
+    cases = make_in_pieces(measure_all)
     tell(
         "measure",
         "Measures of simulated scans, and their intervals",

@@ -5,18 +5,19 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Bool
-from scipy.ndimage import binary_dilation
+from scipy.ndimage import binary_dilation, label
 
-from ..geometry.correlated_errors import covariance_of_fit, covariance_of_sums
+from ..geometry.correlated_errors import covariance_of_sums
 from ..geometry.height_map import Map, MapFrame
 from ..types.arrays import Points, Vector
 from ..types.dent import Dent
 from ..types.deviation import Deviation
 from ..types.quantity import Quantity
+from .dent_depth import SearchedScan, measure_depth
 from .sample import Sample
 
-_FLOOR = 0.4
-"""Radius around the deepest place, in the dent's radius, over which its floor is a paraboloid."""
+_FLOOR = 0.8
+"""Share of its greatest depth down to which a dent has its floor."""
 _RIM = 3
 """Cells around a dent that are its rim."""
 _MOST_AT_RIM = 200
@@ -46,29 +47,26 @@ class DentRegion:
         return self.frame.cell * math.sqrt(self.cells.sum() / math.pi)
 
 
-def measure_dent(
-    region: DentRegion, sample: Sample, deviation: Deviation, located: Points, values: Map
-) -> Dent:
+def measure_dent(region: DentRegion, scan: SearchedScan, values: Map) -> Dent:
     """Measure one dent.
 
-    Its depth is that of a paraboloid fitted to the points around its deepest place; its middle is
+    Its depth is that of a polynomial fitted to the points around its deepest place; its middle is
     the centre of gravity of what is missing; its rim lies where the averaged map is at a tenth of
     its depth.
 
     Args:
         region: The cells that it covers.
-        sample: The points of the scan that belong to the surface.
-        deviation: Their distances from the reference.
-        located: Their places on the map [m].
+        scan: The scan.
         values: The averaged map [m].
     """
+    sample, deviation, located = scan.sample, scan.deviation, scan.located
     inside = region.cells[region.frame.cells_of(located)]
     here, off = sample[inside], deviation[inside]
     reference = float(np.median(off.sigma_reference))
     middle, spread, volume, sigma_volume = _balance(region, here, off, located[inside], values)
     common, moved = _common_part(region, sample, located)
     area = float(region.cells.sum()) * region.frame.cell**2
-    depth = _measure_depth(region, sample, deviation, located, reference, common)
+    depth = measure_depth(scan, _floor_middle(region, values), region.radius, common=common)
     height = _height_at(located[inside], middle)
     axes = region.frame.map_from_world
     along = np.array([spread[0], spread[1], depth.sigma_independent])
@@ -89,39 +87,12 @@ def measure_dent(
     )
 
 
-def _measure_depth(
-    region: DentRegion,
-    sample: Sample,
-    deviation: Deviation,
-    located: Points,
-    reference: float,
-    common: float | None,
-) -> Quantity:
-    """Fit a paraboloid to the floor of a dent."""
-    row, column = region.deepest
-    start = (np.array([column, row]) + 0.5) * region.frame.cell
-    reach = max(_FLOOR * region.radius, 2 * region.frame.cell)
-    near = np.linalg.norm(located[:, :2] - start, axis=1) < reach
-    x, y = ((located[near, :2] - start) / reach).T
-    design = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=1)
-    shape, *_ = np.linalg.lstsq(design, deviation.values[near], rcond=None)
-    u, v = _turning_point(shape)
-    there = np.array([1, u, v, u * u, u * v, v * v])
-    errors = deviation.values[near] - design @ shape
-    trust = covariance_of_fit(design, errors, sample.profile[near], sample.line[near])
-    own = float(there @ trust.matrix @ there)
-    depth = -float(there @ shape)
-    return Quantity("depth", depth, "m", math.sqrt(own + reference**2), common, trust.degrees)
-
-
-def _turning_point(shape: np.ndarray) -> tuple[float, float]:
-    """Give where a paraboloid is deepest; its middle where that lies outside."""
-    _, x, y, xx, xy, yy = shape.tolist()
-    turn = np.array([[2 * xx, xy], [xy, 2 * yy]])
-    if abs(np.linalg.det(turn)) < 1e-12 * float(np.abs(turn).max()) ** 2 or not turn.any():
-        return 0.0, 0.0
-    u, v = np.linalg.solve(turn, [-x, -y]).tolist()
-    return (u, v) if math.hypot(u, v) < 1 else (0.0, 0.0)
+def _floor_middle(region: DentRegion, values: Map) -> np.ndarray:
+    """Give the middle of the floor around the deepest cell [m]; noise shifts that on a flat one."""
+    depth = region.sign * np.where(region.cells, values, 0.0)
+    floors, _ = label(depth > _FLOOR * depth[region.deepest])
+    rows, columns = np.nonzero(floors == floors[region.deepest])
+    return (np.array([columns.mean(), rows.mean()]) + 0.5) * region.frame.cell
 
 
 def _balance(

@@ -12,6 +12,7 @@ from ..geometry.height_map import Map, MapFrame, smooth_map
 from ..types.arrays import Mask, Points, Scalars
 from ..types.dent import Dent
 from ..types.deviation import Deviation
+from .dent_depth import SearchedScan
 from .dent_size import DentRegion, measure_dent
 from .sample import Sample
 
@@ -87,13 +88,17 @@ def find_dents(
     scatter = _GAUSSIAN * float(np.nanmedian(np.abs(single)))
     threshold = max(_HEAVY_TAILS * chance * noise, _SCATTERS * scatter, least_depth)
     sample, deviation, located = sample[kept], deviation[kept], located[kept]
-    dents = [
-        measure_dent(region, sample, deviation, located, values)
+    regions = [
+        region
         for sign in (-1.0, 1.0)
         for region in _regions(frame, sign * values, threshold, noise, sign)
         if _is_seen_again(region, sample, deviation, located)
         and _is_beyond_reference(region, deviation, located, values, threshold)
     ]
+    none = np.zeros(frame.shape, bool)
+    is_dented = np.any([none, *(region.cells for region in regions)], axis=0)
+    scan = SearchedScan.of(frame, sample, deviation, located, is_dented)
+    dents = [measure_dent(region, scan, values) for region in regions]
     dents.sort(key=lambda dent: -abs(dent.depth.value))
     return DentSearch(tuple(dents), threshold, noise)
 
