@@ -2,20 +2,33 @@
 
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from murkscan.errors import InputError, MissingResult
+from murkscan.errors import Degenerate, InputError, MissingResult
 from murkscan.io.deviation_files import save_deviation_ply
 from murkscan.io.json_files import save_json
 from murkscan.mesh import GridMesh
 from murkscan.project import Project
+from murkscan.survey.compared import compare_models
+from murkscan.survey.shown import DEVIATION
 from murkscan.survey.view import draw_views
 from murkscan.types.deviation import Deviation
+from murkscan.view import render_viewer
 
 from ..scans import scan_cloud, step
 
+
+def _bed(x, y):
+    """A surface that can lie on itself in one way only."""
+    return 0.5 + 0.01 * np.sin(60 * x) * np.cos(50 * y) + 0.05 * x
+
+
+BED = scan_cloud(_bed, spacing=2e-3)
+SHIFT = np.array([2e-3, -1e-3, 1.5e-3])
+"""How far a vehicle's log has drifted between two dives [m]."""
 SCAN = scan_cloud(step, spacing=4e-3)
 LINE = SCAN[SCAN.frame == 3]
 """One profile: without a surface no pictures are drawn, which take seconds."""
@@ -43,7 +56,10 @@ def merged(folder, cloud=LINE):
 
 def shown(project):
     """Give what the page says of its models."""
-    page = (project.root / "view/index.html").read_text("utf-8")
+    return content_of((project.root / "view/index.html").read_text("utf-8"))
+
+
+def content_of(page):
     return json.loads(re.search(r'id="content">(.*?)</script>', page, re.S)[1])
 
 
@@ -101,6 +117,53 @@ def test_two_scans_are_told_apart_by_their_folders(tmp_path):
         draw_views(now, other=Project(tmp_path / "nowhere"))
 
 
+@pytest.fixture
+def dives(tmp_path):
+    """The same bed scanned twice, the second time by a log that has drifted."""
+    now, cloud = merged(tmp_path / "2026" / "scan", BED)
+    then, _ = merged(tmp_path / "2025" / "scan", replace(cloud, points=cloud.points + SHIFT))
+    return now, then
+
+
+def _compare(now, then, *, align=True):
+    return compare_models(now, then, align=align, deviation=DEVIATION, most=10**6)
+
+
+def test_before_is_laid_on_after_and_the_page_says_by_how_much(dives):
+    now, then = dives
+    compared = _compare(now, then)
+    first, second = compared.models
+    # The same points without noise: what is left is the thinning of the surfaces to be aligned.
+    np.testing.assert_allclose(second.vertices, first.vertices, atol=3e-5)
+    moved = compared.alignment["shift_of_centre_m"]
+    np.testing.assert_allclose(moved, -SHIFT, atol=3e-5)
+    assert compared.relation.startswith("2025/scan was laid on 2026/scan: moved (-2.0")
+    assert "% of 2026/scan overlaps" in compared.relation
+    page = render_viewer(compared.models, title="dives", relation=compared.relation)
+    assert content_of(page)["relation"] == compared.relation
+
+
+def test_as_given_before_stays_where_its_poses_put_it(dives):
+    compared = _compare(*dives, align=False)
+    first, second = compared.models
+    np.testing.assert_allclose(second.vertices, first.vertices + SHIFT, atol=1e-9)
+    assert compared.alignment is None
+    assert "their poses" in compared.relation
+
+
+def test_scans_that_share_nothing_are_refused_with_the_way_out(dives, tmp_path):
+    far, _ = merged(tmp_path / "far", replace(BED, points=BED.points + 1.0))
+    with pytest.raises(Degenerate, match="--as-given"):
+        _compare(dives[0], far)
+
+
+def test_both_scans_have_the_same_colours(dives):
+    models = content_of(render_viewer(_compare(*dives).models, title="dives"))["models"]
+    layers = zip(*(model["layers"] for model in models), strict=True)
+    for one, other in layers:
+        assert (one["name"], one["range"]) == (other["name"], other["range"])
+
+
 def test_a_cloud_too_large_for_the_page_is_thinned(tmp_path):
     project, cloud = merged(tmp_path / "both")
     assert draw_views(project, most=50)["points"] == 50
@@ -118,5 +181,6 @@ def test_one_profile_has_a_page_and_no_pictures(tmp_path):
 
 def test_a_scan_without_points_says_so(tmp_path):
     project, _ = merged(tmp_path / "empty", LINE[:0])
-    assert draw_views(project) == {"pictures": [], "points": 0}
+    result = draw_views(project)
+    assert (result["pictures"], result["points"]) == ([], 0)
     assert "no point was found" in (project.root / "view/index.html").read_text("utf-8")

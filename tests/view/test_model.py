@@ -7,15 +7,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import murkscan.view
 from murkscan.errors import InputError, NotEnoughData
 from murkscan.mesh import GridMesh
+from murkscan.types.frame_times import FrameTimes
 from murkscan.types.mesh import Mesh
+from murkscan.types.pose import Pose
 from murkscan.view import Layer, model_of_points, model_of_scan, render_viewer
 from murkscan.view.thinned import choose_fairly, cluster_vertices
 
-from ..scans import plane, scan_cloud, sphere
+from ..scans import plane, scan, scan_cloud, sphere
 
 VIEWER = Path(murkscan.view.__file__).parent / "viewer"
 
@@ -77,6 +80,24 @@ def test_a_thinned_surface_is_still_whole():
     # Cells of 3 mm on a ball of 50 mm radius lose a chord's share at the rim and in the bulge.
     assert area(thin) == pytest.approx(area(mesh), rel=0.06)
     assert set(map(tuple, thin.vertices)) <= set(map(tuple, mesh.vertices))
+
+
+def test_a_model_moves_as_a_whole():
+    cloud = scan_cloud(plane, spacing=4e-3, num_rows=20)
+    _, trajectory = scan(plane, spacing=4e-3, num_rows=20)
+    numbers = np.unique(cloud.frame)
+    frames = FrameTimes(numbers.astype(np.uint32), numbers * 0.04)
+    model = model_of_scan("plane", cloud, trajectory=trajectory, frames=frames)
+    turn = Rotation.from_euler("xyz", [0.3, -0.2, 1.0])
+    moved = model.moved(Pose(turn.as_matrix(), np.array([1.0, 2.0, -3.0])), model.views)
+
+    def in_camera(one):
+        """The first vertex as its own camera sees it, and its normal."""
+        seen = Rotation.from_quat(one.attitudes[0], scalar_first=True).inv()
+        return seen.apply([one.vertices[0] - one.path[0], one.normals[0]])
+
+    np.testing.assert_allclose(in_camera(moved), in_camera(model), atol=1e-12)
+    np.testing.assert_allclose(moved.vertices, turn.apply(model.vertices) + [1, 2, -3], atol=1e-12)
 
 
 def test_a_layer_from_other_places_reaches_the_nearest_vertices_only():

@@ -7,11 +7,14 @@ from cyclopts import Parameter
 
 from .progress import progress_bars
 
+Flag = Annotated[bool, Parameter(negative=())]
+
 
 def view(
     out: Path,
     *,
     other: Annotated[Path | None, Parameter(name="--with")] = None,
+    as_given: Flag = False,
     deviation: str = "deviation",
     points: int = 2_000_000,
 ) -> None:
@@ -22,7 +25,10 @@ def view(
     out
         Folder of the scan, with a finished mesh stage.
     other
-        Folder of another scan in the same world, to change to on the page: before and after.
+        Folder of another scan, to change to on the page: before and after.
+    as_given
+        Take the other scan where its poses put it; otherwise it is laid on this one by ICP, and the
+        page says how far it was moved.
     deviation
         Name of the measurement in OUT/measure by whose deviations the page is coloured, if there is
         one.
@@ -33,14 +39,18 @@ def view(
     from ..project import Project
     from ..survey.view import draw_views
     from .summary import print_result
+    from .words import say
 
     with progress_bars() as progress:
         result = draw_views(
             Project(out),
             other=None if other is None else Project(other),
+            align=not as_given,
             deviation=deviation,
             most=points,
             progress=progress,
         )
     counts = {"pictures": len(result["pictures"]), "points": result["points"]}
+    if result.get("relation"):
+        say(result["relation"])
     print_result("view", counts, out / "view" / "index.html")

@@ -1,15 +1,22 @@
 """An alignment in words for the terminal, and in numbers for stage.json."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ..geometry.alignment import Alignment
+from ..types.pose import Pose
 
 
-def describe_alignment(alignment: Alignment | None) -> str:
-    """Say how a pass was moved, how well that is known, and what stays open."""
+def describe_alignment(alignment: Alignment | None, *, whose: str = "it") -> str:
+    """Say how a pass was moved, how well that is known, and what stays open.
+
+    Args:
+        alignment: How; None: it stays.
+        whose: What its overlap is a share of.
+    """
     if alignment is None:
         return "stays where it is"
     shift, turn = _motion(alignment)
@@ -17,11 +24,28 @@ def describe_alignment(alignment: Alignment | None) -> str:
     words = (
         f"moved {_three(shift * 1e3)} ± {_three(sigma[3:] * 1e3)} mm along x, y, z and turned "
         f"{_three(np.degrees(turn), 4)} ± {_three(np.degrees(sigma[:3]), 4)} deg about them; "
-        f"{alignment.overlap:.0%} of it overlaps, {alignment.rms * 1e3:.2f} mm RMS apart"
+        f"{alignment.overlap:.0%} of {whose} overlaps, {alignment.rms * 1e3:.2f} mm RMS apart"
     )
     if alignment.open_directions:
         words += f"; open, so as logged: {', '.join(map(str, alignment.open_directions))}"
     return words
+
+
+def turn_round(alignment: Alignment) -> Alignment:
+    """Give the alignment that lays the target on the source instead; overlap and matches stay."""
+    back = alignment.correction.inverse()
+    both = np.kron(np.eye(2), back.rotation)
+    return replace(
+        alignment,
+        target_from_source=back,
+        centre=(back @ alignment.centre[None])[0],
+        covariance=both @ alignment.covariance @ both.T,
+        open_directions=tuple(
+            replace(one, axis=back.rotation @ one.axis, through=(back @ one.through[None])[0])
+            for one in alignment.open_directions
+        ),
+        start=Pose.identity(),
+    )
 
 
 def alignment_as_json(alignment: Alignment | None) -> dict[str, Any] | None:

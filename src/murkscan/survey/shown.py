@@ -34,13 +34,12 @@ def load_model(project: Project, *, most: int, deviation: str = DEVIATION) -> Mo
     total = project.finished("cloud").counts()["points"]
     if total == 0:
         return None
-    has_surface = project.finished("mesh").counts()["faces"] > 0
     is_scan = not is_merged(project)
     model = model_of_scan(
         title_of(project),
-        _choose_points(project, total, most),
+        choose_points(project, most),
         num_points=total,
-        mesh=project.load_mesh() if has_surface else None,
+        mesh=project.load_mesh() if has_surface(project) else None,
         trajectory=project.load_trajectory() if is_scan else None,
         frames=project.load_frame_times() if is_scan else None,
         is_timed=is_scan and project.load_scan()["recording"]["is_timed"],
@@ -59,6 +58,11 @@ def load_model(project: Project, *, most: int, deviation: str = DEVIATION) -> Mo
 def folder_of(project: Project) -> str:
     """Name a scan by its folder, as told from another of the same recording's name."""
     return "/".join(project.root.resolve().parts[-2:])
+
+
+def has_surface(project: Project) -> bool:
+    """Tell whether the finished mesh stage has found a surface."""
+    return bool(project.finished("mesh").counts()["faces"] > 0)
 
 
 def title_of(project: Project) -> str:
@@ -89,8 +93,9 @@ def deviation_digest(project: Project, name: str) -> str | None:
     return None
 
 
-def _choose_points(project: Project, total: int, most: int) -> PointCloud:
+def choose_points(project: Project, most: int) -> PointCloud:
     """Load a fair choice of a cloud that may be larger than memory."""
+    total = project.finished("cloud").counts()["points"]
     chosen, start, parts = choose_fairly(total, most), 0, []
     for block in project.iterate_cloud():
         low, high = np.searchsorted(chosen, [start, start + len(block)])

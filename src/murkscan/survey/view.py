@@ -1,22 +1,23 @@
 """Show a scan's surface: pictures for print, and a page on which it is turned and measured."""
 
 import time
-from dataclasses import replace
 from typing import Any
 
 from ..errors import InputError
 from ..page import Gallery, Note, Picture, Section, render_page
 from ..project import Project
-from ..view import MOST, PICTURES, Model, draw_pictures, render_viewer
+from ..view import MOST, PICTURES, draw_pictures, render_viewer
+from .compared import Compared, compare_models
 from .merged import is_merged
 from .progress import Progress, silent
-from .shown import DEVIATION, deviation_digest, folder_of, load_model, title_of
+from .shown import DEVIATION, deviation_digest, load_model, title_of
 
 
 def draw_views(
     project: Project,
     *,
     other: Project | None = None,
+    align: bool = True,
     deviation: str = DEVIATION,
     most: int = MOST,
     progress: Progress = silent,
@@ -25,17 +26,21 @@ def draw_views(
 
     Args:
         project: A scan, or a merged cloud, with a finished mesh stage.
-        other: Another one, in the same world, to change to on the page: before and after.
+        other: Another one, to change to on the page: before and after.
+        align: Whether the other one is laid on the scan by ICP; otherwise it stays where its poses
+            put it.
         deviation: Name of the measurement whose deviations the page shows, if it has been made.
         most: Points, and vertices of the surface, that the page holds of a scan.
         progress: Told how many pictures are drawn.
 
     Returns:
         The names of the pictures, in the order to show them, none for a scan without a surface;
-        and how many points the page shows.
+        how many points the page shows; of two scans in words how the other one was moved, and the
+        same in numbers.
 
     Raises:
         MissingResult: The mesh stage has not been finished.
+        Degenerate: The scans do not overlap.
         InputError: There are to be no points on the page, or a deviation has not been measured.
         DeviceError: The disk is full.
     """
@@ -46,7 +51,8 @@ def draw_views(
         inputs["deviation"] = digest
     if other is not None:
         inputs["other"] = f"{other.root} {other.finished('mesh').digest}"
-    stage = project.stage("view", settings={"most": most}, inputs=inputs)
+    settings = {"most": most, "align": align and other is not None}
+    stage = project.stage("view", settings=settings, inputs=inputs)
     if (result := stage.result()) is not None:
         return result
     since = time.monotonic()
@@ -54,23 +60,34 @@ def draw_views(
     names = _draw(project, progress)
     title = title_of(project)
     project.save_pictures_page(_pictures_page(title, names))
-    models = _load_models(project, other, deviation=deviation, most=most)
-    page = render_viewer(models, title=title, pictures="pictures.html") if models else _empty(title)
-    project.save_view_page(page)
-    result = {"pictures": names, "points": sum(model.num_measured for model in models)}
+    shown = _load(project, other, align=align, deviation=deviation, most=most)
+    project.save_view_page(_page(title, shown))
+    result = {
+        "pictures": names,
+        "points": sum(model.num_measured for model in shown.models),
+        "relation": shown.relation,
+        "alignment": shown.alignment,
+    }
     stage.finish(result, since=since)
     return result
 
 
-def _load_models(
-    project: Project, other: Project | None, *, deviation: str, most: int
-) -> list[Model]:
-    """Load what there is to show; two scans are named by their folders."""
-    shown = load_model(project, most=most, deviation=deviation)
-    if other is None:
-        return [] if shown is None else [shown]
-    both = (shown, project), (load_model(other, most=most), other)
-    return [replace(model, name=folder_of(scan)) for model, scan in both if model is not None]
+def _load(
+    project: Project, other: Project | None, *, align: bool, deviation: str, most: int
+) -> Compared:
+    """Load what there is to show."""
+    if other is not None:
+        return compare_models(project, other, align=align, deviation=deviation, most=most)
+    model = load_model(project, most=most, deviation=deviation)
+    return Compared([] if model is None else [model], "", None)
+
+
+def _page(title: str, shown: Compared) -> str:
+    if not shown.models:
+        return _empty(title)
+    return render_viewer(
+        shown.models, title=title, pictures="pictures.html", relation=shown.relation
+    )
 
 
 def _draw(project: Project, progress: Progress) -> list[str]:

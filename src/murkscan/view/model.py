@@ -6,9 +6,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 from scipy.spatial import KDTree
+from scipy.spatial.transform import Rotation
 
 from ..errors import InputError
 from ..types.arrays import Directions, Faces, Indices, Points, Scalars
+from ..types.pose import Pose
 from .shift_field import ShiftField
 from .surface import vertex_normals
 from .views import View, standard_views
@@ -94,6 +96,27 @@ class Model:
             layer = replace(layer, values=self._carry(layer.values, at))
         others = tuple(one for one in self.layers if one.name != layer.name)
         return replace(self, layers=(*others, layer))
+
+    def moved(self, target_from_world: Pose, views: tuple[View, ...]) -> "Model":
+        """Give a model laid elsewhere, to be shown beside one that is there.
+
+        Args:
+            target_from_world: Where it goes.
+            views: The views of the other one, in its world.
+        """
+        turn = target_from_world.rotation
+        attitudes = self.attitudes
+        if len(attitudes):
+            seen = Rotation.from_quat(attitudes, scalar_first=True)
+            attitudes = (Rotation.from_matrix(turn) * seen).as_quat(scalar_first=True)
+        return replace(
+            self,
+            vertices=target_from_world @ self.vertices,
+            normals=self.normals @ turn.T,
+            path=target_from_world @ self.path,
+            attitudes=attitudes,
+            views=views,
+        )
 
     def _carry(self, values: Scalars, at: Points) -> Values:
         away, nearest = KDTree(at).query(self.vertices, distance_upper_bound=4 * self.spacing)

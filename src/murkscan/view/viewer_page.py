@@ -23,13 +23,16 @@ _SHARE = 1.0
 _DEPTH_MAP = "viridis_r"
 
 
-def render_viewer(models: Sequence[Model], *, title: str, pictures: str = "") -> str:
+def render_viewer(
+    models: Sequence[Model], *, title: str, pictures: str = "", relation: str = ""
+) -> str:
     """Make the page.
 
     Args:
         models: What it shows; of two or more, which lie in one world frame, one at a time.
         title: Its name, such as the recording's.
         pictures: Address of the page with the pictures, relative to this one; empty for none.
+        relation: How several models lie to one another, in a sentence.
 
     Returns:
         The whole document, with all data in it. Text from outside is escaped.
@@ -44,9 +47,11 @@ def render_viewer(models: Sequence[Model], *, title: str, pictures: str = "") ->
         raise NotEnoughData("There is nothing to show: give one model or more.")
     maps = {_DEPTH_MAP} | {layer.colour_map for model in models for layer in model.layers}
     packed = [_pack_model(model) for model in models]
+    _share_ranges([about for about, _ in packed])
     content = {
         "title": title,
         "pictures": pictures,
+        "relation": relation,
         "maps": {name: _as_texture(name) for name in sorted(maps)},
         "models": [about for about, _ in packed],
     }
@@ -116,6 +121,15 @@ def _pack_model(model: Model) -> tuple[dict[str, Any], dict[str, str]]:
         "views": {view.name: _rounded(view.view_from_world, 9) for view in model.views},
     }
     return about, blobs
+
+
+def _share_ranges(models: Sequence[dict[str, Any]]) -> None:
+    """Give layers of one name the same colours in all models, so that they can be compared."""
+    for name in {layer["name"] for model in models for layer in model["layers"]}:
+        same = [one for model in models for one in model["layers"] if one["name"] == name]
+        lows, highs = zip(*(one["range"] for one in same), strict=True)
+        for one in same:
+            one["range"] = [min(lows), max(highs)]
 
 
 def _about_shifts(field: ShiftField | None) -> dict[str, Any] | None:

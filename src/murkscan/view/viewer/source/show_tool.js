@@ -31,7 +31,7 @@ export function showTool(app) {
   const parts = [note, kinds.element, make("label", {}, "Colour by ", colours), range];
   if (app.models.length > 1) {
     parts.unshift(scans.element, make("p", { className: "note" },
-      "Both lie in the world that their poses give; B changes from one to the other."));
+      `${app.content.relation} B changes from one to the other.`.trim()));
   }
 
   function sync() {

@@ -1,0 +1,72 @@
+"""Two scans to be shown in one world: before and after."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+from ..errors import Degenerate
+from ..geometry.alignment import Alignment
+from ..project import Project
+from ..view import Model
+from .alignment_words import alignment_as_json, describe_alignment, turn_round
+from .reference import lay_on, load_reference
+from .shown import choose_points, folder_of, has_surface, load_model
+
+_SAMPLE = 2_000_000
+"""Points of the scan, about, that alignment looks at."""
+
+
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """What the page shows of two scans."""
+
+    models: list[Model]
+    """Those that have points, named by their folders; the second one moved."""
+    relation: str
+    """How the second one was moved, in a sentence."""
+    alignment: dict[str, Any] | None
+    """The same as plain values; None where it lies as its own poses put it."""
+
+
+def compare_models(
+    project: Project, other: Project, *, align: bool, deviation: str, most: int
+) -> Compared:
+    """Load two scans, and lay the second on the first as `measure deviation` lays a reference.
+
+    Args:
+        project: The scan that stays.
+        other: The one that is laid on it.
+        align: Whether to lay it there; otherwise it stays where its poses put it.
+        deviation: As for `load_model`, of the first.
+        most: As for `load_model`.
+
+    Raises:
+        Degenerate: They do not overlap.
+        MissingResult: A stage has not been finished.
+        FormatError: A file is damaged.
+    """
+    stays = load_model(project, most=most, deviation=deviation)
+    moves = load_model(other, most=most)
+    named = [(stays, folder_of(project)), (moves, folder_of(other))]
+    models = [replace(model, name=name) for model, name in named if model is not None]
+    if len(models) < 2:
+        return Compared(models, "", None)
+    first, second = models
+    if not align:
+        return Compared(models, "Both lie where their poses put them.", None)
+    if not (has_surface(project) and has_surface(other)):
+        text = "Both lie where their poses put them: without two surfaces nothing can be aligned."
+        return Compared(models, text, None)
+    alignment = _lay(other, project)
+    second = second.moved(alignment.target_from_source, first.views)
+    words = describe_alignment(alignment, whose=first.name)
+    relation = f"{second.name} was laid on {first.name}: {words}."
+    return Compared([first, second], relation, alignment_as_json(alignment))
+
+
+def _lay(other: Project, project: Project) -> Alignment:
+    try:
+        laid = lay_on(load_reference(other.root), choose_points(project, _SAMPLE))
+    except Degenerate as error:
+        raise Degenerate(f"{other.root}: {error} With --as-given both stay as they are.") from error
+    assert laid.alignment is not None
+    return turn_round(laid.alignment)
