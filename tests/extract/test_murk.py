@@ -202,6 +202,15 @@ def test_a_good_recording_gives_no_cause_for_remarks():
     assert _remarks(_scene()) == ""
 
 
+def test_the_skirt_of_a_nearer_surface_is_not_taken_for_another_exposure():
+    """Its light adds to the glow before it, which is brightest near the stripe."""
+    rows = np.arange(HEIGHT)[:, None]
+    bright = _glow() > np.quantile(_glow()[: HEIGHT // 2], 0.4)
+    skirt = 0.5 * np.where(bright & (rows < _hull(0)), _glow(), 0.0)
+    light = [one + skirt * (number % 4 == 2) for number, one in enumerate(_scene())]
+    assert _remarks(light) == ""
+
+
 @pytest.mark.parametrize(
     ("light", "word"),
     [

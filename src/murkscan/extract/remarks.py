@@ -120,7 +120,7 @@ def _is_like(frame: Frame, frames: Sequence[Frame]) -> bool:
 
 def _about_glow(glow: Levels, indices: Sequence[int]) -> list[str]:
     usual = np.nanmedian(glow, axis=0)
-    exposure = np.array([_ratio(one / usual) for one in glow])
+    exposure = np.array([_shared_factor(one, usual) for one in glow])
     known = exposure[np.isfinite(exposure)]
     remarks = []
     if len(known) > 1 and known.max() > _STEP * known.min():
@@ -139,9 +139,17 @@ def _about_glow(glow: Levels, indices: Sequence[int]) -> list[str]:
     return remarks
 
 
-def _ratio(values: Scalars) -> float:
-    known = values[np.isfinite(values)]
-    return float(np.median(known)) if len(known) >= _FEWEST else float("nan")
+def _shared_factor(levels: Scalars, usual: Scalars) -> float:
+    """Give the factor that dim, middling and bright places have in common.
+
+    Exposure multiplies all alike; the skirt of a near, bright stripe adds to some of them.
+    """
+    known = np.flatnonzero(np.isfinite(levels))
+    if len(known) < _FEWEST:
+        return float("nan")
+    thirds = np.array_split(known[np.argsort(usual[known])], 3)
+    factors = [float(np.median(levels[third] / usual[third])) for third in thirds]
+    return max(1.0, min(factors)) * min(1.0, max(factors))
 
 
 def _change(pattern: Levels, cut: int) -> float:
