@@ -52,6 +52,28 @@ def test_a_surface_beside_the_points_keeps_its_own_vertices(cloud):
     np.testing.assert_array_equal(np.unique(model.moments), np.unique(frames))
 
 
+def test_a_smoothed_surface_is_drawn_as_it_is_and_read_off_its_points():
+    cloud = scan_cloud(plane, spacing=2e-3, num_rows=80, noise=2e-4)
+    mesh = GridMesh().mesh(cloud)
+    model = model_of_scan("plane", cloud, mesh=mesh)
+    assert len(model.vertices) == model.num_measured == len(cloud)
+    np.testing.assert_array_equal(np.sort(model.vertices, axis=0), np.sort(cloud.points, axis=0))
+    np.testing.assert_array_equal(model.surface[model.faces], mesh.vertices[mesh.faces])
+    away = np.linalg.norm(model.surface - model.vertices, axis=1)
+    assert np.mean(away > 0) > 0.5
+    # Sigma is kept in single precision.
+    assert 0 < away.max() <= cloud.sigma.max() * (1 + 1e-4)
+
+
+def test_a_vertex_beyond_a_point_s_sigma_is_another_place():
+    cloud = scan_cloud(plane, spacing=2e-3, num_rows=80, noise=2e-4)
+    mesh = GridMesh(smoothing=0.0).mesh(cloud)
+    lifted = Mesh(mesh.vertices - np.array([0, 0, 3e-4]), mesh.faces)
+    model = model_of_scan("plane", cloud, mesh=lifted)
+    assert len(model.vertices) == len(cloud) + len(mesh.vertices)
+    np.testing.assert_array_equal(model.surface[model.faces], lifted.vertices[lifted.faces])
+
+
 def test_points_lie_in_order_of_time(cloud):
     shuffled = cloud[np.random.default_rng(0).permutation(len(cloud))]
     model = model_of_scan("plane", shuffled)
@@ -97,7 +119,9 @@ def test_a_model_moves_as_a_whole():
         return seen.apply([one.vertices[0] - one.path[0], one.normals[0]])
 
     np.testing.assert_allclose(in_camera(moved), in_camera(model), atol=1e-12)
-    np.testing.assert_allclose(moved.vertices, turn.apply(model.vertices) + [1, 2, -3], atol=1e-12)
+    np.testing.assert_allclose(
+        moved.vertices, turn.apply(model.vertices) + np.array([1, 2, -3]), atol=1e-12
+    )
 
 
 def test_a_layer_from_other_places_reaches_the_nearest_vertices_only():

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from murkscan.view.packing import NO_VALUE, pack, pack_positions, pack_values
+from murkscan.view.packing import NO_VALUE, pack, pack_moves, pack_positions, pack_values
 
 
 def unpack(text, count, columns, width):
@@ -45,6 +45,19 @@ def test_one_point_is_a_place_too():
     packed = pack_positions(np.array([[1.0, 2.0, 3.0]]), np.zeros(1))
     assert packed.low == (1.0, 2.0, 3.0)
     np.testing.assert_array_equal(unpack(packed.text, 1, 3, packed.num_bytes), 0)
+
+
+@pytest.mark.parametrize("extent", [0.3, 200.0])
+def test_moved_places_are_as_exact_as_the_positions(extent):
+    random = np.random.default_rng(2)
+    points = random.uniform(0, extent, (500, 3))
+    to = points + 3e-3 * random.standard_normal((500, 3))
+    grid = pack_positions(points, np.full(500, 1e-3))
+    text, least = pack_moves(points, to, grid)
+    steps = unpack(text, 500, 3, grid.num_bytes + 1) + least
+    places = np.array(grid.low) + (grid.codes_of(points) + steps) * grid.step
+    assert np.abs(places - to).max() <= grid.step / 2 * (1 + 1e-9)
+    assert pack_moves(points, points, grid) is None
 
 
 def test_what_is_not_known_stays_unknown():

@@ -137,6 +137,17 @@ def test_positions_arrive_as_finely_as_the_page_says(page, steps):
     assert grid / 2 <= min(2e-5, 0.1 * SIGMA) * (1 + 1e-9)
 
 
+def test_the_surface_arrives_as_finely_and_apart_from_its_points(page, steps):
+    model, _ = steps
+    moved = np.abs(model.surface - model.vertices).max()
+    assert moved > 1e-5
+    centre = np.array(page.evaluate("murkscan.model.centre"))
+    shown = np.array(page.evaluate("Array.from(murkscan.model.surface)")).reshape(-1, 3) + centre
+    allowed = page.evaluate("murkscan.model.grid.step") / 2
+    # Single precision of half a metre is 3e-8 m, for the position and for the sum.
+    assert np.abs(shown - model.surface).max() <= allowed + 1e-7
+
+
 def test_a_known_length_is_measured_right_and_its_doubt_follows_sigma(page, steps):
     _, cloud = steps
     # One point on each of the two planes, 30 mm apart in depth.

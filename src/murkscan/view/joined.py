@@ -1,6 +1,7 @@
 """From a scan's cloud, mesh and motion to what the page shows."""
 
 import numpy as np
+from jaxtyping import Int
 from scipy.spatial import KDTree
 
 from ..types.arrays import Indices, SignedFrameNumbers
@@ -15,6 +16,12 @@ from .views import standard_views
 
 MOST = 2_000_000
 """Points, and vertices of the surface, that the page holds unless told otherwise."""
+
+Corners = Int[np.ndarray, "corners"]
+Sources = Int[np.ndarray, "sources"]
+
+_ROUNDING = 1 + 1e-4
+"""A surface moves points by their sigma at most, which is kept in single precision."""
 
 
 def model_of_scan(
@@ -44,17 +51,17 @@ def model_of_scan(
         num_points: Points that the scan has, where the cloud is a choice of them already.
 
     Returns:
-        The model. A vertex of the surface that is no point takes what is known from the nearest.
+        The model. A vertex of the surface that lies within a point's own standard deviation is that
+        point, as the surface has smoothed it; others take what is known from the nearest.
     """
     kept = cloud[choose_fairly(len(cloud), most)]
     kept = kept[np.argsort(kept.frame, kind="stable")]
     surface = cluster_vertices(_no_surface() if mesh is None else mesh, most)
-    found = KDTree(kept.points).query(surface.vertices)
-    apart, nearest = np.flatnonzero(np.asarray(found[0]) > 0), np.asarray(found[1])
-    place = nearest.astype(int)
-    place[apart] = len(kept) + np.arange(len(apart))
-    source = np.concatenate([np.arange(len(kept)), nearest[apart]]).astype(int)
+    place, source = _find_points(surface, kept, spacing := usual_spacing(kept.points))
+    apart = place >= len(kept)
     vertices = np.concatenate([kept.points, surface.vertices[apart]])
+    corners = vertices.copy()
+    corners[place] = surface.vertices
     faces = place[surface.faces]
     times, moments = np.unique(kept.frame, return_inverse=True)
     seconds = _seconds(times, frames)
@@ -62,8 +69,9 @@ def model_of_scan(
     return Model(
         name=name,
         vertices=vertices,
-        normals=normals_of(vertices, faces, kept.normals[source].astype(float)),
+        normals=normals_of(corners, faces, kept.normals[source].astype(float)),
         faces=faces,
+        surface=corners,
         num_measured=len(kept),
         layers=_layers(kept, source),
         moments=moments[source],
@@ -72,10 +80,29 @@ def model_of_scan(
         path=np.zeros((0, 3)) if path is None else path.positions,
         attitudes=np.zeros((0, 4)) if path is None else path.quaternions,
         views=standard_views(trajectory),
-        spacing=usual_spacing(kept.points),
+        spacing=spacing,
         shift_field=shift_field,
         note=_note(num_points or len(cloud), kept, mesh, surface),
     )
+
+
+def _find_points(surface: Mesh, cloud: PointCloud, spacing: float) -> tuple[Corners, Sources]:
+    """Find which point each vertex of a surface is, or number it after the points.
+
+    Returns:
+        The number of each vertex, and for each number the point from which it takes what is known.
+    """
+    found = KDTree(cloud.points).query(surface.vertices)
+    away, nearest = np.asarray(found[0]), np.asarray(found[1]).astype(int)
+    order = np.lexsort((away, nearest))
+    is_nearest = np.ones(len(order), bool)
+    # A point is one vertex, the nearest of those that could be it.
+    is_nearest[order[1:]] = np.diff(nearest[order]) != 0
+    near = away <= np.minimum(cloud.sigma[nearest] * _ROUNDING, spacing)
+    apart = np.flatnonzero((away > 0) & ~(near & is_nearest))
+    place = nearest.copy()
+    place[apart] = len(cloud) + np.arange(len(apart))
+    return place, np.concatenate([np.arange(len(cloud)), nearest[apart]])
 
 
 def _no_surface() -> Mesh:

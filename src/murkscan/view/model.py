@@ -52,8 +52,10 @@ class Model:
     """Unit normals of the vertices; zero where there is none."""
     faces: Faces
     """Triangles between the vertices; none where there is no surface."""
+    surface: Points
+    """Where the triangles' corners lie [m]: a smoothed surface passes its points by."""
     num_measured: int
-    """Vertices that are measured points, to which a measurement snaps."""
+    """Vertices that are measured points, which a measurement snaps to and is taken between."""
     layers: tuple[Layer, ...]
     """What is known of each vertex; of the one named sigma [mm] a measurement gets its doubt."""
     moments: Indices
@@ -112,6 +114,7 @@ class Model:
         return replace(
             self,
             vertices=target_from_world @ self.vertices,
+            surface=target_from_world @ self.surface,
             normals=self.normals @ turn.T,
             path=target_from_world @ self.path,
             attitudes=attitudes,
@@ -142,6 +145,7 @@ def model_of_points(
         vertices=points,
         normals=normals_of(points, corners, np.zeros((count, 3))),
         faces=corners,
+        surface=points,
         num_measured=count,
         layers=(),
         moments=np.zeros(count, int),

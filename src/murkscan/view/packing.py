@@ -61,6 +61,10 @@ class PackedPositions:
     """Distance between its lines [m]; no position is off by more than half of it on any axis."""
     num_bytes: int
 
+    def codes_of(self, points: Points) -> Int[np.ndarray, "n 3"]:
+        """Give the grid's nearest line on each axis; outside of it below 0 or above the last."""
+        return np.rint((points - np.array(self.low)) / self.step).astype(np.int64)
+
     def as_plain(self) -> dict[str, Any]:
         """Give all but the text, for the page's JSON."""
         return {"low": self.low, "step": self.step, "bytes": self.num_bytes}
@@ -87,6 +91,25 @@ def pack_positions(points: Points, sigma: Scalars) -> PackedPositions:
     num_bytes = 2 if codes.max() < 256**2 else 3
     x, y, z = low.tolist()
     return PackedPositions(pack(codes, num_bytes), (x, y, z), step, num_bytes)
+
+
+def pack_moves(points: Points, to: Points, grid: PackedPositions) -> tuple[str, int] | None:
+    """Pack how far places have moved, in steps of the grid.
+
+    Args:
+        points: The packed positions [m].
+        to: Where they have moved to [m].
+        grid: The grid of the positions.
+
+    Returns:
+        The text, of one byte more than the positions have, and the smallest step, which is taken
+        off; None where nothing has moved.
+    """
+    steps = grid.codes_of(to) - grid.codes_of(points)
+    if not steps.any():
+        return None
+    low = int(steps.min())
+    return pack(steps - low, grid.num_bytes + 1), low
 
 
 def pack_directions(directions: Directions) -> str:

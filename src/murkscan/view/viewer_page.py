@@ -15,7 +15,7 @@ from ..errors import InputError, NotEnoughData
 from ..types.arrays import Indices, Scalars
 from .depth import Depth
 from .model import Layer, Model
-from .packing import pack, pack_directions, pack_positions, pack_values
+from .packing import pack, pack_directions, pack_moves, pack_positions, pack_values
 from .shift_field import ShiftField
 
 _SHARE = 1.0
@@ -81,7 +81,8 @@ def _template() -> Template:
 def _check(model: Model) -> None:
     if len(model.vertices) == 0:
         raise NotEnoughData(f"There is nothing to show of {model.name}: it has no points.")
-    broken = len(model.vertices) - int(np.isfinite(model.vertices).all(axis=1).sum())
+    places = np.concatenate([model.vertices, model.surface], axis=1)
+    broken = len(places) - int(np.isfinite(places).all(axis=1).sum())
     if broken:
         raise InputError(
             f"{broken} of {len(model.vertices)} points of {model.name} are not finite; leave them "
@@ -100,6 +101,9 @@ def _pack_model(model: Model) -> tuple[dict[str, Any], dict[str, str]]:
         "faces": pack(model.faces, 4),
         "moments": pack(model.moments[:, None], 4),
     }
+    moves = pack_moves(model.vertices, model.surface, positions)
+    if moves is not None:
+        blobs["moves"] = moves[0]
     layers, typical = [_about_depth(model)], _typical(model)
     for number, layer in enumerate(model.layers):
         blobs[f"layer{number}"], low, step = pack_values(layer.values)
@@ -111,6 +115,7 @@ def _pack_model(model: Model) -> tuple[dict[str, Any], dict[str, str]]:
         "measured": model.num_measured,
         "faces": len(model.faces),
         "positions": positions.as_plain(),
+        "moves": None if moves is None else moves[1],
         "spacing": model.spacing,
         "layers": layers,
         "times": _rounded(model.times, 6),

@@ -26,6 +26,9 @@ export class Drawing {
     this.parts = [this.points, this.sample];
     if (model.faces.length) {
       this.surface = new Mesh(this.geometry(model.faces), surface);
+      if (model.surface !== model.positions) {
+        this.surface.geometry.setAttribute("position", new BufferAttribute(model.surface, 3));
+      }
       this.parts.push(this.surface);
     }
     for (const part of this.parts) part.frustumCulled = false;

@@ -13,6 +13,9 @@ export async function loadModel(about, number, centre) {
   const { low, step, bytes } = about.positions;
   model.positions = interleave(await blob("positions", count, 3, bytes), (code, axis) =>
     low[axis] - centre[axis] + code * step);
+  // A smoothed surface passes its points by: its corners lie elsewhere than what is measured on.
+  model.surface = about.moves === null ? model.positions
+    : moved(model.positions, await blob("moves", count, 3, bytes + 1), about.moves, step);
   model.normals = directions(await blob("normals", count, 2, 2));
   model.faces = interleaveWhole(await blob("faces", about.faces, 3, 4));
   model.moments = (await blob("moments", count, 1, 4))[0];
@@ -35,6 +38,16 @@ function interleave(columns, value) {
     const codes = columns[axis];
     for (let i = 0; i < count; i++) rows[3 * i + axis] = value(codes[i], axis);
   }
+  return rows;
+}
+
+function moved(positions, columns, least, step) {
+  const rows = new Float32Array(positions.length);
+  columns.forEach((steps, axis) => {
+    for (let i = 0, p = axis; i < steps.length; i++, p += 3) {
+      rows[p] = positions[p] + (least + steps[i]) * step;
+    }
+  });
   return rows;
 }
 

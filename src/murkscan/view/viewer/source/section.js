@@ -34,8 +34,8 @@ export function extentAlong({ positions }, [x, y, z]) {
 }
 
 // Pieces of line, six numbers each: both ends [m].
-export function meetTriangles({ positions, faces }, normal, offset) {
-  const sides = sidesOf(positions, normal, offset);
+export function meetTriangles({ surface, faces }, normal, offset) {
+  const sides = sidesOf(surface, normal, offset);
   const found = [];
   for (let f = 0; f < faces.length; f += 3) {
     const corners = [faces[f], faces[f + 1], faces[f + 2]];
@@ -46,8 +46,8 @@ export function meetTriangles({ positions, faces }, normal, offset) {
       if (sides[i] > 0 === sides[j] > 0) continue;
       const share = sides[i] / (sides[i] - sides[j]);
       for (let axis = 0; axis < 3; axis++) {
-        const start = positions[3 * i + axis];
-        found.push(start + share * (positions[3 * j + axis] - start));
+        const start = surface[3 * i + axis];
+        found.push(start + share * (surface[3 * j + axis] - start));
       }
     }
   }
