@@ -279,10 +279,20 @@ def test_the_map_and_the_speed_are_the_same_on_the_page_and_in_the_file():
     assert content["speed"]["highest_speed_mm_s"] == pytest.approx(2e3 * STEP * 25)
     text = _text(page)
     assert "highest speed for the wanted spacing 200 mm/s" in text
-    assert "Wanted are points every 8 mm" in text
+    assert "a spacing of 8 mm, which was asked for" in text
     assert "covered 0.00072 100" in text
     assert "Slow enough: profiles lie 0.5 times the wanted spacing apart" in text
     assert json.loads(json.dumps(content, allow_nan=False)) == content
+
+
+def test_without_a_wanted_spacing_the_scan_is_its_own_measure():
+    """Profiles four times as far apart as points along them are no gap, and no one's mistake."""
+    summary = _covered(_summary(range(10)), range(10))
+    area = as_json(summary)["coverage"]["area_m2"]
+    assert area["covered"] == pytest.approx(area["all"])
+    text = _text(as_html(summary))
+    assert "4 times as far apart as the points along them" in text
+    assert "highest speed for a grid as dense both ways 25 mm/s" in text
 
 
 def test_too_fast_a_motion_is_told_with_its_cure():

@@ -13,7 +13,7 @@ def report(out: Path, *, spacing_mm: float | None = None) -> None:
     out
         Folder of the scan, with all stages up to view finished.
     spacing_mm
-        Wanted spacing of the points, by which gaps and the speed are judged; that along the stripe
+        Wanted spacing of the points, by which gaps and the speed are judged; gaps by the scan's own
         unless given.
     """
     from ..project import Project

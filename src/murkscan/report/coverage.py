@@ -30,7 +30,7 @@ class Coverage:
 
     directions: SurfaceDirections
     wanted: float
-    """Wanted spacing of the points [m]."""
+    """Spacing of the points by which gaps are judged [m]."""
     hole: float
     """Distance of neighbours above which there is a hole between them [m]."""
     cell: float

@@ -41,7 +41,11 @@ def as_html(summary: ScanSummary) -> str:
     if views:
         sections.append(Section("Pictures", [_gallery(views, is_first_large=True)]))
     if summary.coverage is not None:
-        sections.append(Section("Coverage", coverage_blocks(summary.coverage)))
+        sections.append(
+            Section(
+                "Coverage", coverage_blocks(summary.coverage, is_asked=summary.wanted is not None)
+            )
+        )
     elif summary.num_points:
         sections.append(Section("Coverage", [Note(_NO_MAP, "warning")]))
     if summary.speed is not None:

@@ -21,7 +21,7 @@ def as_plain_verdicts(summary: ScanSummary) -> dict[str, Any]:
     recorded = summary.recorded
     return {
         "coverage": None if summary.coverage is None else _coverage(summary.coverage),
-        "speed": None if summary.speed is None else _speed(summary.speed),
+        "speed": None if summary.speed is None else _speed(summary.speed, summary.wanted),
         "signal_histogram_grey_levels": _histogram(summary.signals, 1.0),
         "sigma_histogram_mm": _histogram(summary.sigmas, 1e3),
         "posterior": _belief(summary.belief) if summary.belief.is_told else None,
@@ -47,7 +47,7 @@ def as_plain_verdicts(summary: ScanSummary) -> dict[str, Any]:
 def _coverage(coverage: Coverage) -> dict[str, Any]:
     directions = coverage.directions
     return {
-        "wanted_spacing_mm": round_off(1e3 * coverage.wanted),
+        "judged_by_spacing_mm": round_off(1e3 * coverage.wanted),
         "hole_above_mm": round_off(1e3 * coverage.hole),
         "share_covered": round_off(coverage.covered / coverage.mapped),
         "area_m2": {
@@ -82,12 +82,12 @@ def _draw(coverage: Coverage) -> list[str]:
     return ["".join(row) for row in letters[coverage.state() + 1]]
 
 
-def _speed(speed: Speed) -> dict[str, Any]:
+def _speed(speed: Speed, wanted: float | None) -> dict[str, Any]:
     return {
         "frame_rate_hz": _perhaps(speed.rate, 1.0),
         "step_mm": as_plain(speed.step, 1e3),
         "speed_mm_s": as_plain(speed.shown, 1e3),
-        "wanted_spacing_mm": _perhaps(speed.wanted, 1e3),
+        "wanted_spacing_mm": _perhaps(wanted, 1e3),
         "highest_speed_mm_s": _perhaps(speed.highest, 1e3),
         "needed_frame_rate_hz": _perhaps(speed.needed_rate, 1.0),
     }

@@ -40,8 +40,9 @@ def scanned_rows(summary: ScanSummary) -> list[tuple[str, str]]:
     ]
 
 
-def coverage_blocks(coverage: Coverage) -> list[Block]:
+def coverage_blocks(coverage: Coverage, *, is_asked: bool) -> list[Block]:
     """Show the map, and the areas that it has and misses."""
+    told = "was asked for" if is_asked else "is this scan's own; --spacing-mm asks for another"
     rows: list[tuple[str, float | None, float | None]] = [
         ("covered", coverage.covered, 100 * coverage.covered / coverage.mapped)
     ]
@@ -51,10 +52,10 @@ def coverage_blocks(coverage: Coverage) -> list[Block]:
     ]
     rows.append(("all", coverage.mapped, 100.0))
     text = (
-        f"Wanted are points every {1e3 * coverage.wanted:.3g} mm. Where neighbours on a scan line "
-        f"lie more than {1e3 * coverage.hole:.3g} mm apart, what is between them is missing. What "
-        "lies outside of all profiles is not known to be a surface and is not counted; areas are "
-        "as seen from the scanner."
+        f"Gaps are judged by a spacing of {1e3 * coverage.wanted:.3g} mm, which {told}. Where "
+        f"neighbours on a scan line lie more than {1e3 * coverage.hole:.3g} mm apart, what is "
+        "between them is missing. What lies outside of all profiles is not known to be a surface "
+        "and is not counted; areas are as seen from the scanner."
     )
     return [
         Note(text),
@@ -80,15 +81,18 @@ def speed_blocks(speed: Speed, summary: ScanSummary) -> list[Block]:
     rows += [
         ("spacing along the stripe, median", _spread(summary.along.median, "mm")),
         ("spacing along the motion, median", _spread(summary.across.median, "mm")),
-        ("wanted spacing", _spread(speed.wanted, "mm")),
     ]
     if speed.rate is not None:
         rows.append(("frame rate", f"{speed.rate:.4g} a second"))
+    aim = "a grid as dense both ways"
+    if summary.wanted is not None:
+        aim = "the wanted spacing"
+        rows.append(("wanted spacing", _spread(summary.wanted, "mm")))
     if speed.highest is not None:
-        rows.append(("highest speed for the wanted spacing", f"{1e3 * speed.highest:.4g} mm/s"))
+        rows.append((f"highest speed for {aim}", f"{1e3 * speed.highest:.4g} mm/s"))
     if speed.needed_rate is not None:
-        rows.append(("frame rate that this speed needs", f"{speed.needed_rate:.4g} a second"))
-    return [*_speed_verdict(speed), Table(rows)]
+        rows.append((f"frame rate for {aim}", f"{speed.needed_rate:.4g} a second"))
+    return [*_speed_verdict(speed, is_asked=summary.wanted is not None), Table(rows)]
 
 
 def belief_rows(belief: Belief) -> list[tuple[str, int, float]]:
@@ -145,20 +149,22 @@ def _reach_notes(coverage: Coverage) -> list[Block]:
     return [Note(text)]
 
 
-def _speed_verdict(speed: Speed) -> list[Block]:
+def _speed_verdict(speed: Speed, *, is_asked: bool) -> list[Block]:
     if speed.wanted is None or speed.step.median is None:
         return []
     ratio = speed.step.median / speed.wanted
-    if ratio > _ENOUGH:
-        cure = "" if speed.highest is None else f" Move at {1e3 * speed.highest:.3g} mm/s or less,"
-        needed = speed.needed_rate
-        rate = "" if needed is None else f" or take {needed:.3g} frames a second,"
-        tail = f"{cure}{rate} for a grid as dense both ways." if cure else ""
+    if not is_asked:
         text = (
-            f"Faster than the spacing needs: profiles lie {ratio:.3g} times as far apart as "
-            f"wanted.{tail}"
+            f"Profiles lie {ratio:.3g} times as far apart as the points along them. Whether that "
+            "is near enough is for you to say: --spacing-mm judges the speed by what you need."
         )
-        return [Note(text, "warning")]
+        return [Note(text)]
+    if ratio > _ENOUGH:
+        cure = "" if speed.highest is None else f" Move at {1e3 * speed.highest:.3g} mm/s or less"
+        needed = speed.needed_rate
+        rate = "" if needed is None else f", or take {needed:.3g} frames a second"
+        text = f"Too fast: profiles lie {ratio:.3g} times as far apart as wanted."
+        return [Note(f"{text}{cure}{rate}{'.' if cure else ''}", "warning")]
     most = "" if speed.highest is None else f", and up to {1e3 * speed.highest:.3g} mm/s would do"
     text = f"Slow enough: profiles lie {ratio:.2g} times the wanted spacing apart{most}."
     return [Note(text, "good")]

@@ -66,6 +66,8 @@ class ScanSummary:
     """How the stripe fades with range."""
     belief: Belief
     """How sure the extractor was of the points."""
+    wanted: float | None
+    """Spacing of the points that was asked for [m]; None where none was."""
     speed: Speed | None
     """None where there is no motion to judge."""
     steps: Sequence[CalibrationStep]
@@ -114,7 +116,8 @@ def summarise(
         cloud: The points in the world frame, all at once or in blocks.
         num_outliers: Points that were taken out of the cloud.
         mesh_size: Vertices and triangles of the surface.
-        wanted: Wanted spacing of the points [m]; that along the stripe unless given.
+        wanted: Wanted spacing of the points [m]; None: gaps are judged by the scan's own, the
+            speed by that along the stripe.
         noise: Standard deviation of a pixel [grey levels], 0 where it is not known.
         settings: Every setting, as plain values; may be nested.
         versions: Version of each program.
@@ -144,6 +147,7 @@ def summarise(
         sigmas=Histogram.from_ratios(values["sigma"]),
         reach=reach,
         belief=gathered.belief,
+        wanted=wanted,
         speed=None
         if trajectory is None
         else judge_speed(frames, trajectory, is_timed=recorded.is_timed, wanted=needed),
@@ -168,8 +172,8 @@ def with_coverage(
         frames: The frames that were read.
         trajectory: world_from_camera.
     """
-    wanted = summary.speed and summary.speed.wanted
-    if not wanted or not summary.num_points:
+    spacing = max(summary.along.median or 0.0, summary.across.median or 0.0)
+    if summary.speed is None or not spacing:
         return summary
     axis = summary.rig.lasers[summary.laser].axis
     layout = SwathLayout(
@@ -180,6 +184,6 @@ def with_coverage(
         summary.recorded.fields_per_picture,
         SurfaceDirections.from_trajectory(trajectory, axis),
     )
-    spacing = max(summary.along.median or 0.0, summary.across.median or 0.0)
+    wanted = summary.wanted or spacing
     coverage = map_coverage(profiles, layout, reach=summary.reach, wanted=wanted, spacing=spacing)
     return replace(summary, coverage=coverage)

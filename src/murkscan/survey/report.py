@@ -22,7 +22,7 @@ def write_report(
 
     Args:
         project: A scan with all stages up to view finished.
-        spacing: Wanted spacing of the points [m]; that along the stripe unless given.
+        spacing: Wanted spacing of the points [m]; gaps are judged by the scan's own unless given.
         progress: Told when it begins and ends.
 
     Returns:
