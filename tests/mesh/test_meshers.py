@@ -15,7 +15,7 @@ HAS_OPEN3D = importlib.util.find_spec("open3d") is not None
 WITH_OPEN3D = pytest.mark.skipif(not HAS_OPEN3D, reason='the extra "murkscan[mesh]" is absent')
 MESHERS = [
     pytest.param(GridMesh(), id="grid"),
-    pytest.param(Poisson(depth=7), id="poisson", marks=WITH_OPEN3D),
+    pytest.param(Poisson(), id="poisson", marks=WITH_OPEN3D),
 ]
 
 
@@ -142,6 +142,41 @@ def test_noise_does_not_tear_the_grid_mesh():
     whole = GridMesh().mesh(scan_cloud(plane))
     noisy = GridMesh().mesh(scan_cloud(plane, noise=6e-4))
     assert len(noisy.faces) > 0.99 * len(whole.faces)
+
+
+def unnumbered(cloud, *, with_normals=True):
+    """Give the cloud as it comes from another program's file."""
+    zero = np.zeros_like(cloud.frame)
+    normals = cloud.normals if with_normals else np.zeros_like(cloud.normals)
+    return replace(cloud, frame=zero, scan_line=zero, sigma=0 * cloud.sigma, normals=normals)
+
+
+def test_the_grid_mesh_of_points_without_a_grid_is_refused_with_the_cure():
+    with pytest.raises(InputError, match="--mesher poisson"):
+        GridMesh().mesh(unnumbered(scan_cloud(plane, spacing=2e-3)))
+
+
+@WITH_OPEN3D
+@pytest.mark.parametrize("with_normals", [True, False])
+def test_poisson_makes_a_surface_of_points_without_a_grid(with_normals):
+    cloud = scan_cloud(holed, spacing=2e-3, noise=1e-4)
+    mesh = Poisson().mesh(unnumbered(cloud, with_normals=with_normals))
+    middle = sum(corners(mesh)) / 3
+    inner = np.abs(middle[:, :2]).max(axis=1) < 0.04
+    # The noise is 0.1 mm, and cells of a millimetre hold one or two points.
+    assert np.std(middle[inner, 2] - 0.5) < 1e-4
+    assert np.mean(face_normals(mesh)[inner, 2] < 0) > 0.999
+    # Trimmed beyond the disc of thirty points: 30 of 2 x 0.6 mm² each, 3.4 mm.
+    assert np.hypot(middle[:, 0], middle[:, 1]).min() > 0.02 - 3.4e-3 - 1e-3
+
+
+@WITH_OPEN3D
+def test_the_depth_that_poisson_takes_is_no_worse_than_the_points():
+    cloud = scan_cloud(sphere, noise=1e-4)
+    mesh = Poisson().mesh(cloud)
+    away = np.linalg.norm(mesh.vertices - np.array([0.0, 0.0, 0.5]), axis=1)
+    inner = np.hypot(*mesh.vertices[:, :2].T) < 0.03
+    assert np.sqrt(np.mean((away[inner] - 0.05) ** 2)) < 1e-4
 
 
 def test_settings_without_sense_are_refused():

@@ -47,22 +47,22 @@ def make_mesher(name: MesherName, settings: tuple[str, ...]) -> "AbstractMesher"
 def _make(stage: str, choice: str, settings: tuple[str, ...]) -> Any:
     final = getattr(importlib.import_module(f"murkscan.{stage}"), choice)
     defaults = final()
-    names = [field.name for field in dataclasses.fields(final)]
+    types = {field.name: field.type for field in dataclasses.fields(final)}
     values = {}
     for setting in settings:
         name, _, text = setting.partition("=")
-        if name not in names or not text:
+        if name not in types or not text:
             raise InputError(
                 f"{setting!r} is no setting of {choice}; give --set NAME=NUMBER with a NAME of "
-                f"{', '.join(names)}."
+                f"{', '.join(types)}."
             )
-        values[name] = _parse(setting, text, getattr(defaults, name))
+        values[name] = _parse(setting, text, types[name])
     return dataclasses.replace(defaults, **values)
 
 
-def _parse(setting: str, text: str, default: Any) -> int | float:
+def _parse(setting: str, text: str, kind: Any) -> int | float:
     try:
-        number = int(text) if isinstance(default, int) else float(text)
+        number = int(text) if kind in (int, int | None) else float(text)
     except ValueError as error:
         raise InputError(f"--set {setting}: {text!r} is not a number.") from error
     if not abs(number) < _LARGEST:

@@ -85,6 +85,14 @@ class ScanGrid:
         return cell, cell[order], order
 
     @cached_property
+    def is_numbered(self) -> bool:
+        """Whether the points say where in the grid they are; those of other programs do not.
+
+        Of a scan no cell has more points than a stripe has branches.
+        """
+        return len(self.cloud) <= _MAX_BRANCHES * len(np.unique(self._cells[1]))
+
+    @cached_property
     def usual_along(self) -> float:
         """Median distance between neighbours in a profile [m]; 0 where there are none."""
         return self._usual(0, 1)

@@ -45,10 +45,20 @@ class GridMesh(AbstractMesher):
             )
 
     def mesh(self, cloud: PointCloud) -> Mesh:
-        """Make the surface; its vertices are the points that have neighbours, in their order."""
+        """Make the surface; its vertices are the points that have neighbours, in their order.
+
+        Raises:
+            InputError: The points do not say to which profile and scan line they belong.
+        """
         if len(cloud) == 0:
             return empty_mesh()
         grid = ScanGrid.from_cloud(cloud, max_jump=self.max_jump)
+        if not grid.is_numbered:
+            raise InputError(
+                f"The cloud's {len(cloud)} points do not say to which profile and scan line they "
+                "belong, as those of other programs do not, so their neighbours are unknown; make "
+                "the surface with --mesher poisson, or in Python Poisson()."
+            )
         along, across = grid.linked(0, 1), grid.linked(1, 0)
         faces = np.concatenate([_full_cells(grid, along, across), _corners(along, across)])
         vertices = smooth_points(grid, along, across, most=self.smoothing)

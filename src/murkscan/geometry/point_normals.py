@@ -1,0 +1,80 @@
+"""Normals of points of which nothing is known but their places."""
+
+import numpy as np
+from jaxtyping import Float, Int
+from scipy import sparse
+from scipy.sparse.csgraph import breadth_first_order, connected_components, minimum_spanning_tree
+from scipy.spatial import KDTree
+
+from ..errors import NotEnoughData
+from ..types.arrays import Directions, Indices, Normals, Points
+
+_NEIGHBOURS = 30
+"""Points around a place that make its plane: where a scanner's lines are five times as far apart as
+the points on them, they lie on three lines."""
+_STRIDE = 3
+"""Every so many of these a normal is turned alike with: near ones and far ones."""
+_BLOCK = 50_000
+
+Near = Int[np.ndarray, "n k"]
+"""Numbers of each point's neighbours, itself first."""
+
+
+def estimate_point_normals(points: Points) -> Normals:
+    """Fit a plane to the points around each, and turn neighbours alike.
+
+    Which side is the front nobody knows: the point of a piece with the smallest z is taken to look
+    that way, towards the camera of a scan without poses.
+
+    Args:
+        points: Points of a surface [m], in any order.
+
+    Raises:
+        NotEnoughData: There are fewer than four points.
+
+    References:
+        Hoppe et al., Surface reconstruction from unorganized points, SIGGRAPH 1992, section 3.
+    """
+    if len(points) < 4:
+        raise NotEnoughData(f"Normals need at least 4 points, got {len(points)}.")
+    near = np.asarray(KDTree(points).query(points, k=min(_NEIGHBOURS, len(points)))[1])
+    normals = np.concatenate(
+        [_fit_planes(points[near[at : at + _BLOCK]]) for at in range(0, len(points), _BLOCK)]
+    )
+    return (normals * _turn_alike(points, normals, near)[:, None]).astype(np.float32)
+
+
+def _fit_planes(around: Float[np.ndarray, "m k 3"]) -> Directions:
+    """Give the direction in which each group of points spreads least."""
+    off = around - around.mean(axis=1, keepdims=True)
+    return np.linalg.eigh(np.einsum("mki,mkj->mij", off, off))[1][:, :, 0]
+
+
+def _turn_alike(points: Points, normals: Directions, near: Near) -> Float[np.ndarray, " n"]:
+    """Give the sign of each normal: along the tree on which neighbours differ least."""
+    there = near[:, 1::_STRIDE]
+    here = np.repeat(np.arange(len(points)), there.shape[1])
+    alike = np.abs(np.einsum("ij,ij->i", normals[here], normals[there.ravel()]))
+    # An edge of weight 0 would be none.
+    weights = np.maximum(1.0 - alike, 0.0) + 1e-6
+    graph = sparse.csr_matrix((weights, (here, there.ravel())), shape=(len(points),) * 2)
+    tree = minimum_spanning_tree(graph.maximum(graph.T))
+    count, piece = connected_components(tree, directed=False)
+    sign = np.ones(len(points))
+    by_depth = np.argsort(points[:, 2], kind="stable")
+    _, first = np.unique(piece[by_depth], return_index=True)
+    assert len(first) == count
+    for start in by_depth[first].tolist():
+        _follow(tree, start, normals, sign)
+    return sign
+
+
+def _follow(tree: sparse.csr_matrix, start: int, normals: Directions, sign: np.ndarray) -> None:
+    """Set the signs of one piece, from its point with the smallest z."""
+    order, before = breadth_first_order(tree, start, directed=False)
+    sign[start] = -1.0 if normals[start, 2] > 0 else 1.0
+    later: Indices = order[1:]
+    dots = np.einsum("ij,ij->i", normals[later], normals[before[later]])
+    turns = np.where(dots < 0, -1.0, 1.0).tolist()
+    for point, parent, turn in zip(later.tolist(), before[later].tolist(), turns, strict=True):
+        sign[point] = turn * sign[parent]
