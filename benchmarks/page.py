@@ -14,7 +14,8 @@ from murkscan.types.cloud import PointCloud
 from murkscan.types.mesh import Mesh
 from murkscan.view import model_of_scan, render_viewer
 
-PROFILES, LINES = 1000, 1000
+PROFILES, MORE_PROFILES, LINES = 1000, 2000, 1000
+SIGMA = 2e-4
 SIZE = {"width": 1280, "height": 800}
 FLAGS = (
     *("--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"),
@@ -26,15 +27,16 @@ VIEWER = Path(__file__).resolve().parents[1] / "src/murkscan/view/viewer"
 BARE = Path(__file__).with_name("page_bare.js")
 
 
-def sea_bed() -> tuple[PointCloud, Mesh]:
-    """Make a million points on a wavy plate of 2 m, and the surface between them."""
+def sea_bed(profiles: int) -> tuple[PointCloud, Mesh]:
+    """Make a wavy plate of 2 m, of a thousand points a profile, and a smooth surface past them."""
     random = np.random.default_rng(0)
     y, x = (
-        axis.ravel() for axis in np.mgrid[0 : 2 : LINES * 1j, 0 : 2 : PROFILES * 1j].swapaxes(1, 2)
+        axis.ravel() for axis in np.mgrid[0 : 2 : LINES * 1j, 0 : 2 : profiles * 1j].swapaxes(1, 2)
     )
     z = 1 + 0.05 * np.sin(6 * x) * np.cos(5 * y)
     # Noise on every axis, as a scan has it: without, the file would be smaller than any real one.
-    x, y, z = np.stack([x, y, z]) + random.normal(0, 2e-4, (3, len(x)))
+    noise = random.normal(0, SIGMA, (3, len(x)))
+    x, y, z = np.stack([x, y, z]) + noise
     ones = np.ones(len(x), np.float32)
     frame, line = np.divmod(np.arange(len(x)), LINES)
     cloud = PointCloud(
@@ -42,16 +44,28 @@ def sea_bed() -> tuple[PointCloud, Mesh]:
         normals=np.tile(np.float32([0, 0, -1]), (len(x), 1)),
         signal=(50 + 20 * random.standard_normal(len(x))).astype(np.float32),
         posterior=ones,
-        sigma=2e-4 * ones,
+        sigma=np.float32(SIGMA) * ones,
         sigma_common=0 * ones,
         frame=frame.astype(np.int32),
         scan_line=line.astype(np.int32),
         laser=np.zeros(len(x), np.uint8),
     )
-    a = np.arange(len(x)).reshape(PROFILES, LINES)
+    a = np.arange(len(x)).reshape(profiles, LINES)
     a, b, c, d = a[:-1, :-1].ravel(), a[:-1, 1:].ravel(), a[1:, :-1].ravel(), a[1:, 1:].ravel()
     faces = np.concatenate([np.stack([a, b, c], axis=1), np.stack([b, d, c], axis=1)])
-    return cloud, Mesh(cloud.points, faces)
+    # As the grid mesher smooths: towards the truth, by one sigma at most.
+    vertices = cloud.points.copy()
+    vertices[:, 2] -= 0.99 * np.clip(noise[2], -SIGMA, SIGMA)
+    return cloud, Mesh(vertices, faces)
+
+
+def write_page(profiles: int, file: Path) -> float:
+    """Write the page of a sea bed, and give the time to join and pack it [s]."""
+    cloud, mesh = sea_bed(profiles)
+    start = time.perf_counter()
+    model = model_of_scan("sea bed", cloud, mesh=mesh)
+    file.write_text(render_viewer([model], title="sea bed"), "utf-8")
+    return time.perf_counter() - start
 
 
 def time_page(browser, file: Path, kind: str) -> tuple[float, float]:
@@ -103,6 +117,7 @@ FULL = """(() => {
   stage.draw();
   return stage.cost;
 })()"""
+AS_POINTS = f"(murkscan.stage.kind = 'points', {FULL})"
 
 
 def bare_page(folder: Path) -> Path | None:
@@ -135,24 +150,20 @@ def main() -> None:
     chromium = shutil.which("chromium")
     if chromium is None:
         skip("page", "the system has no chromium")
-    cloud, mesh = sea_bed()
     with tempfile.TemporaryDirectory() as name, sync_playwright() as playwright:
-        folder = Path(name)
-        start = time.perf_counter()
-        model = model_of_scan("sea bed", cloud, mesh=mesh)
-        joined = time.perf_counter() - start
-        start = time.perf_counter()
-        (folder / "index.html").write_text(render_viewer([model], title="sea bed"), "utf-8")
-        written = time.perf_counter() - start
+        page, more = Path(name) / "index.html", Path(name) / "more.html"
+        made, made_more = write_page(PROFILES, page), write_page(MORE_PROFILES, more)
         browser = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS))
-        page = folder / "index.html"
         surface = time_page(browser, page, FULL)
-        points = time_page(browser, page, f"(murkscan.stage.kind = 'points', {FULL})")
+        points = time_page(browser, page, AS_POINTS)
         turning = coarse_frame(browser, page)
-        bare = bare_page(folder)
+        surface_more = time_page(browser, more, FULL)
+        points_more = time_page(browser, more, AS_POINTS)
+        turning_more = coarse_frame(browser, more)
+        bare = bare_page(Path(name))
         peer = (np.nan, np.nan) if bare is None else time_page(browser, bare, "bare()")
         browser.close()
-        size = page.stat().st_size / 1e6
+        size, size_more = (file.stat().st_size / 1e6 for file in (page, more))
     if bare is None:
         print(
             "three.js alone is not measured: npm is absent or could not fetch it", file=sys.stderr
@@ -168,7 +179,13 @@ def main() -> None:
             Figure("three.js alone, points: first picture", peer[0], "s"),
             Figure("three.js alone, points: a frame", peer[1], "s"),
             Figure("size of the file", size, "MB"),
-            Figure("making it: join and pack", joined + written, "s"),
+            Figure("making it: join and pack", made, "s"),
+            Figure("two million points: first picture", surface_more[0], "s"),
+            Figure("two million points: a whole frame, as surface", surface_more[1], "s"),
+            Figure("two million points: a whole frame, as points", points_more[1], "s"),
+            Figure("two million points: a frame while it is turned", turning_more, "s"),
+            Figure("two million points: size of the file", size_more, "MB"),
+            Figure("two million points: making it", made_more, "s"),
         ],
         note="Chromium without a graphics chip (SwiftShader), 1280 x 800. three.js alone draws as "
         "many points, made in the page and not unpacked, with nothing around them. While the model "

@@ -29,13 +29,14 @@ def chromium() -> Iterator:
         browser.close()
 
 
-def open_page(browser, path, *, scheme="light", size=(960, 600)):
+def open_page(browser, path, *, scheme="light", size=(960, 600), **device):
     """Open a page from a file and wait for its first picture.
 
     Returns:
         The page, and a list that gets every error and every request that leaves the page.
     """
-    page = browser.new_page(viewport={"width": size[0], "height": size[1]}, color_scheme=scheme)
+    viewport = {"width": size[0], "height": size[1]}
+    page = browser.new_page(viewport=viewport, color_scheme=scheme, **device)
     faults = []
     page.on("console", lambda said: said.type in ("error", "warning") and faults.append(said.text))
     page.on("pageerror", lambda error: faults.append(str(error)))

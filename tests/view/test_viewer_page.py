@@ -258,6 +258,73 @@ def test_a_drag_turns_the_model_and_r_brings_it_back(page):
     np.testing.assert_array_equal(drawn(page), before)
 
 
+def test_reading_and_measuring_need_no_new_picture_of_the_model(page, steps):
+    _, cloud = steps
+    frames = page.evaluate("murkscan.stage.canvas.dataset.frames")
+    click(page, cloud.points[len(cloud) // 2])
+    assert page.locator("#reading").is_visible()
+    page.keyboard.press("m")
+    assert page.locator("#reading").is_hidden()
+    for number in (len(cloud) // 3, len(cloud) // 2):
+        click(page, cloud.points[number])
+    assert page.locator("#labels span").count() == 1
+    rest(page)
+    assert page.evaluate("murkscan.stage.canvas.dataset.frames") == frames
+
+
+@pytest.fixture(scope="module")
+def phone(browser, steps, tmp_path_factory):
+    """The page on a phone, and a way to put fingers on it."""
+    file = tmp_path_factory.mktemp("phone") / "index.html"
+    file.write_text(render_viewer([steps[0]], title="step"), "utf-8")
+    page, faults = open_page(browser, file, size=(390, 780), has_touch=True, is_mobile=True)
+    session = page.context.new_cdp_session(page)
+
+    def drag(*ways):
+        """Move fingers, each from one place to another [px]."""
+        for kind, shares in (
+            ("touchStart", [0.0]),
+            ("touchMove", [0.25, 0.5, 0.75, 1.0]),
+            ("touchEnd", [None]),
+        ):
+            for share in shares:
+                places = [
+                    {"x": x + (share or 0) * (u - x), "y": y + (share or 0) * (v - y), "id": k}
+                    for k, ((x, y), (u, v)) in enumerate(ways)
+                ]
+                touches = [] if share is None else places
+                session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": touches})
+        rest(page)
+
+    yield page, drag
+    assert faults == []
+    page.close()
+
+
+def test_one_finger_turns_and_two_zoom(phone):
+    page, drag = phone
+    where = "[...murkscan.stage.camera.position, murkscan.stage.camera.zoom]"
+    *before, zoom = page.evaluate(where)
+    drag(((200, 350), (280, 380)))
+    *after, same = page.evaluate(where)
+    assert np.linalg.norm(np.subtract(after, before)) > 0.1 * np.linalg.norm(before)
+    assert same == zoom
+    drag(((180, 350), (120, 350)), ((220, 350), (280, 350)))
+    # Fingers four times as far apart: the controls begin to count at their first step.
+    assert 2 < page.evaluate(where)[-1] / zoom <= 4.1
+
+
+def test_on_a_phone_a_tool_opens_at_a_tap_and_leaves_the_model_in_sight(phone):
+    page, _ = phone
+    page.locator("#panel nav button", has_text="Cut").tap()
+    page.locator("#tool-cut button").first.tap()
+    rest(page)
+    assert page.locator("#tool-cut svg").is_visible()
+    assert page.locator("#stage").bounding_box()["height"] > 780 / 3
+    # Nothing is wider than the phone.
+    assert page.evaluate("document.documentElement.scrollWidth") == 390
+
+
 def test_colours_follow_the_chosen_layer(page):
     page.locator("#tool-show select").select_option("plain")
     rest(page)

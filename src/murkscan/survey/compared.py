@@ -14,6 +14,9 @@ from .shown import choose_points, folder_of, has_surface, load_model
 _SAMPLE = 2_000_000
 """Points of the scan, about, that alignment looks at."""
 
+_ALL = 6
+"""Motions of a rigid body."""
+
 
 @dataclass(frozen=True, eq=False)
 class Compared:
@@ -57,6 +60,12 @@ def compare_models(
         text = "Both lie where their poses put them: without two surfaces nothing can be aligned."
         return Compared(models, text, None)
     alignment = _lay(other, project)
+    if len(alignment.open_directions) == _ALL:
+        text = (
+            f"Both lie where their poses put them: what {second.name} and {first.name} share does "
+            "not show how one lies on the other."
+        )
+        return Compared(models, text, None)
     second = second.moved(alignment.target_from_source, first.views)
     words = describe_alignment(alignment, whose=first.name)
     relation = f"{second.name} was laid on {first.name}: {words}."

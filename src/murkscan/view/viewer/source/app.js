@@ -16,6 +16,8 @@ import { showTool } from "./show_tool.js";
 import { colourTable } from "./unpack.js";
 import { viewsTool } from "./views_tool.js";
 
+const OVER = new Set(["measuring", "first", "snapped", "measures", "along", "read"]);
+
 export class App {
   constructor(content, models, stage) {
     this.content = content;
@@ -57,12 +59,16 @@ export class App {
       Object.assign(patch, { first: null, snapped: null, read: null, along: null, profile: Infinity, playing: false });
       if (this.state.cut?.axis === "measured") patch.cut = null;
     }
+    if (patch.measuring) patch.read = null; // it would lie over what is measured
     Object.assign(this.state, patch);
     const isIn = (name) => name in patch;
     if (["scan", "cut", "along"].some(isIn)) this.findSection();
     if (["scan", "profile", "path"].some(isIn)) this.showTime();
     this.sync();
-    this.stage.invalidate();
+    // What lies over the picture needs no new one, which without a graphics chip takes its time.
+    const names = Object.keys(patch);
+    if (names.length && names.every((name) => OVER.has(name))) this.follow();
+    else this.stage.invalidate();
   }
 
   findSection() {

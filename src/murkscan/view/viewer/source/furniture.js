@@ -1,6 +1,7 @@
 // What stands still on the picture: scale bar, axes, colour bar.
 
 import { grouped, length, roundDown, ticks } from "./numbers.js";
+import { wordFor } from "./words.js";
 
 const AXES = { x: [0, "var(--x)"], y: [1, "var(--y)"], z: [2, "var(--z)"] };
 const LONGEST = 0.25; // of the picture's width
@@ -47,7 +48,7 @@ export function showLegend(layer, range, colours) {
   // Depth grows away from the viewer: near is on top, as on the pictures.
   element.classList.toggle("turned", layer.name === "depth");
   element.innerHTML = "<figcaption></figcaption><div class='bar'></div><ol></ol>";
-  element.querySelector("figcaption").textContent = layer.unit ? `${layer.name} [${layer.unit}]` : layer.name;
+  element.querySelector("figcaption").textContent = wordFor(layer.name) + (layer.unit ? ` [${layer.unit}]` : "");
   element.querySelector(".bar").style.setProperty("--stops", stops.join(","));
   element.querySelector("ol").innerHTML = marks.join("");
 }

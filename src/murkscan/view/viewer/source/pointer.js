@@ -3,6 +3,7 @@
 import { NO_VALUE, pointOf } from "./model.js";
 import { length, valueText } from "./numbers.js";
 import { pick } from "./pick.js";
+import { wordFor } from "./words.js";
 
 const STILL = 6; // px that a click may move
 const NEAR = { mouse: 12, pen: 14, touch: 24 };
@@ -59,6 +60,6 @@ export function showReading(app) {
   const { model } = app;
   const place = pointOf(model, read).map((x, k) => `${"xyz"[k]} ${length(x + model.centre[k])}`);
   const known = model.layers.filter(({ name }) => model.values[name][read] !== NO_VALUE)
-    .map(({ name, unit }) => `${name} ${valueText(model.values[name][read], unit)}`);
+    .map(({ name, unit }) => `${wordFor(name)} ${valueText(model.values[name][read], unit)}`);
   element.textContent = [...place, ...known, `profile ${model.moments[read] + 1}`].join("  ·  ");
 }

@@ -1,8 +1,7 @@
 // Which scan, as what, in which colours.
 
 import { choice, make } from "./dom.js";
-
-const WORDS = { posterior: "probability", "sigma common": "sigma of calibration" };
+import { wordFor } from "./words.js";
 
 export function showTool(app) {
   const scans = choice("Scan", app.models.map((model) => [model.number, model.name]),
@@ -31,7 +30,7 @@ export function showTool(app) {
   const parts = [note, kinds.element, make("label", {}, "Colour by ", colours), range];
   if (app.models.length > 1) {
     parts.unshift(scans.element, make("p", { className: "note" },
-      `${app.content.relation} B changes from one to the other.`.trim()));
+      `${app.content.relation} Key B changes from one to the other.`.trim()));
   }
 
   function sync() {
@@ -44,7 +43,7 @@ export function showTool(app) {
     const names = ["plain", ...model.layers.map(({ name }) => name)];
     colours.replaceChildren(...names.map((name) => {
       const unit = model.layers.find((one) => one.name === name)?.unit;
-      const text = WORDS[name] ?? name;
+      const text = wordFor(name);
       return make("option", { value: name, textContent: unit ? `${text} [${unit}]` : text });
     }));
     colours.value = layer?.name ?? "plain";
