@@ -10,6 +10,7 @@ from ..errors import InputError
 from ..io.json_files import load_json
 from ..project import STAGES, Project
 from ..report import ScanSummary, Shown, as_html, as_json, summarise, with_coverage
+from .kept import kept_profiles
 from .progress import Progress, silent
 from .recorded import tell_recording
 from .scan_rig import load_scan_rig
@@ -86,7 +87,7 @@ def _summarise(project: Project, spacing: float | None) -> ScanSummary:
         durations={name: stage.seconds() for name, stage in stages.items()},
         pictures=_pictures(project),
     )
-    profiles = project.load_profile_parts()
+    profiles = kept_profiles(project, summary.rig.lasers[summary.laser].axis)
     return with_coverage(summary, profiles, frames=frames, trajectory=trajectory)
 
 

@@ -1,0 +1,40 @@
+"""Which points of the profiles a cloud has kept, told part by part."""
+
+import numpy as np
+import pytest
+
+from murkscan.cloud import merge_profiles
+from murkscan.project import Project
+from murkscan.survey.kept import kept_profiles
+from murkscan.types.profile import Profile
+
+from ..scans import plane, scan
+
+PARTS, FRAMES = 3, 20
+
+
+@pytest.mark.parametrize("block", [70, 10**6])
+def test_points_that_the_cloud_left_out_are_gone_and_all_others_are_there(tmp_path, block):
+    profile, trajectory = scan(plane, spacing=2e-3, num_rows=40)
+    # A second branch on every scan line, of another signal.
+    below = Profile(**{**vars(profile), "signal": profile.signal + 7})
+    both = Profile.concatenate([profile, below])
+    both = both[np.argsort(both.frame, kind="stable")]
+    kept = np.random.default_rng(0).random(len(both)) < 0.7
+    kept[both.frame == 31] = False  # of one frame nothing is left
+    project = Project(tmp_path)
+    stage = project.stage("triangulate", settings={}, inputs={})
+    stage.begin()
+    for part in range(PARTS):
+        project.save_profile_part(part, both[both.frame // FRAMES == part])
+    stage.finish({}, since=0.0)
+    cloud = merge_profiles(both, trajectory, axis="x")[kept]
+    stage = project.stage("cloud", settings={}, inputs={})
+    stage.begin()
+    with project.writing_cloud() as write:
+        for start in range(0, len(cloud), block):
+            write(cloud[start : start + block])
+    stage.finish({}, since=0.0)
+    found = Profile.concatenate(list(kept_profiles(project, "x")))
+    np.testing.assert_array_equal(found.points, both.points[kept])
+    np.testing.assert_array_equal(found.signal, both.signal[kept])
