@@ -6,6 +6,8 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 const QUICK = 40; // ms a frame that feels immediate
 const REST = 180; // ms without movement until everything is drawn
 const FEWEST = 20000; // points that still show a shape
+const SIZE = 1.2; // of a point, in distances of neighbours
+const COARSE_SIZE = 2; // the same of a sample's, which lie at random: smaller ones leave holes
 // Pixels that the writing takes around the model, by the width of the canvas.
 const RIMS = [
   { upTo: 600, left: 24, right: 24, top: 112, bottom: 64 },
@@ -188,7 +190,8 @@ export class Stage {
     this.isCoarse = count < visible.model.measured;
     const gap = visible.model.spacing * Math.sqrt(visible.model.measured / count);
     const ratio = this.renderer.getPixelRatio();
-    visible.uniforms.size.value = ratio * Math.min(Math.max(1.2 * gap * this.scale, 1.5), 14);
+    const wide = this.isCoarse ? COARSE_SIZE : SIZE;
+    visible.uniforms.size.value = ratio * Math.min(Math.max(wide * gap * this.scale, 1.5), 14);
     const start = performance.now();
     this.renderer.render(this.scene, this.camera);
     if (this.isCoarse) return;
