@@ -14,10 +14,14 @@ from .voxels import VoxelGrid
 
 _WANTED = 20_000
 """Points that a surface is thinned to unless told: more make alignment slower, hardly better."""
+_MOST = 200_000
+"""Points of a mesh beyond which a wanted spacing is not kept."""
 _FEWEST = 30
 """Points below which there is no surface to align."""
 _AROUND = 9
 """Points, itself among them, whose mean height a point is moved to."""
+_ALIKE = 0.7
+"""Cosine of the angle between normals of neighbours on one surface."""
 _NEIGHBOURS = 20
 """Points through which a plane gives the normal where a cloud brings none."""
 
@@ -82,7 +86,8 @@ class SurfacePoints:
 
         Args:
             mesh: The surface.
-            spacing: Distance between the points [m]; for about 20,000 unless given.
+            spacing: Distance between the points [m]; for about 20,000 unless given, and larger
+                where there would be more than 200,000.
 
         Raises:
             NotEnoughData: The mesh has no area.
@@ -90,7 +95,8 @@ class SurfacePoints:
         shape = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)
         if not shape.area > 0:
             raise NotEnoughData("The mesh has no area, so there is nothing to align with.")
-        spacing = spacing or float(np.sqrt(shape.area / _WANTED))
+        most = _WANTED if spacing is None else _MOST
+        spacing = max(spacing or 0.0, float(np.sqrt(shape.area / most)))
         count = max(int(shape.area / spacing**2), _FEWEST)
         points, faces = trimesh.sample.sample_surface(shape, 3 * count, seed=0)
         grid = VoxelGrid(np.asarray(points, float), spacing, np.round(points[0]))
@@ -123,7 +129,10 @@ def _level(points: Points, normals: Directions, weights: Scalars) -> Points:
     """
     _, near = cKDTree(points).query(points, k=min(_AROUND, len(points)))
     heights = np.einsum("nkj,nj->nk", points[near] - points[:, None], normals)
-    mean = (heights * weights[near]).sum(axis=1) / weights[near].sum(axis=1)
+    # The other side of a thin plate is another surface.
+    alike = np.einsum("nkj,nj->nk", normals[near], normals) > _ALIKE
+    shares = np.where(alike, weights[near], 0.0)
+    mean = (heights * shares).sum(axis=1) / shares.sum(axis=1)
     return points + mean[:, None] * normals
 
 

@@ -4,8 +4,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from ..errors import InputError
+import numpy as np
+
+from ..errors import Degenerate, InputError
 from ..geometry.alignment import Alignment, align_surfaces
+from ..geometry.alignment_fit import no_overlap
+from ..geometry.clip import clip_mesh
 from ..geometry.surface_points import SurfacePoints
 from ..io.mesh_files import load_mesh
 from ..project import Project
@@ -15,6 +19,9 @@ from ..types.mesh import Mesh
 
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254}
 """Lengths of the units that meshes come in [m]."""
+
+_AROUND = 0.1
+"""How far around a scan its place in the reference is looked for, in the size of the scan."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,10 +69,20 @@ def load_reference(path: Path, *, unit: str = "m") -> Reference:
 def lay_on(reference: Reference, cloud: PointCloud) -> Reference:
     """Lay a reference on a scan by ICP, as far as their overlap shows how.
 
+    Only what lies around the scan is looked at: of a whole ship's drawing that is little.
+
     Raises:
         Degenerate: They do not overlap: bring the reference nearly into place first.
     """
-    scan, surface = SurfacePoints.from_cloud(cloud), SurfacePoints.from_mesh(reference.mesh)
+    scan, size = SurfacePoints.from_cloud(cloud), np.ptp(cloud.points, axis=0)
+    margin = _AROUND * float(np.linalg.norm(size))
+    low, high = cloud.points.min(axis=0) - margin, cloud.points.max(axis=0) + margin
+    part = clip_mesh(reference.mesh, low, high)
+    if len(part.faces) == 0:
+        raise Degenerate(no_overlap(0, len(scan), margin))
+    surface = SurfacePoints.from_mesh(part, spacing=scan.spacing)
+    if surface.spacing > scan.spacing:
+        scan = SurfacePoints.from_cloud(cloud, spacing=surface.spacing)
     alignment = align_surfaces(scan, surface)
     scan_from_reference = alignment.target_from_source.inverse()
     moved = replace(reference.mesh, vertices=scan_from_reference @ reference.mesh.vertices)

@@ -1,0 +1,73 @@
+"""Laying a drawing on a scan of a small part of it."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from murkscan import Degenerate, Mesh, PointCloud
+from murkscan.io.mesh_files import save_mesh
+from murkscan.survey.reference import lay_on, load_reference
+
+
+def _blade(x, y):
+    return 0.05 * np.sin(6 * x) * np.cos(5 * y) + 0.1 * x * y
+
+
+def _sheet(surface, half, count) -> Mesh:
+    x, y = (part.ravel() for part in np.meshgrid(*[np.linspace(-half, half, count)] * 2))
+    first = (np.arange(count - 1)[:, None] * count + np.arange(count - 1)).ravel()
+    a, b, c, d = first, first + 1, first + count, first + count + 1
+    faces = np.concatenate([np.stack([a, c, b], 1), np.stack([b, c, d], 1)])
+    return Mesh(np.stack([x, y, surface(x, y)], axis=1), faces)
+
+
+def _join(*meshes: Mesh) -> Mesh:
+    starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
+    faces = [mesh.faces + start for mesh, start in zip(meshes, starts, strict=False)]
+    return Mesh(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(faces))
+
+
+@pytest.fixture(scope="module")
+def drawing(tmp_path_factory) -> Path:
+    """A blade 12 mm thick, and far more of the ship than was scanned."""
+    front, back = _sheet(_blade, 0.7, 141), _sheet(lambda x, y: _blade(x, y) + 0.012, 0.7, 141)
+    back = replace(back, faces=back.faces[:, ::-1])
+    hull = Mesh(np.array([[-90.0, -9, 3], [90, -9, 3], [0, 9, 4]]), np.array([[0, 1, 2]]))
+    path = tmp_path_factory.mktemp("ship") / "ship.ply"
+    save_mesh(path, _join(front, back, hull))
+    return path
+
+
+def _scan(shift: np.ndarray) -> PointCloud:
+    """Scan the front, seen from below; the log is off by a shift [m]."""
+    random = np.random.default_rng(0)
+    x, y = (part.ravel() for part in np.meshgrid(*[np.linspace(-0.4, 0.4, 201)] * 2))
+    z = _blade(x, y) + random.normal(0, 1e-4, len(x))
+    slopes = [0.3 * np.cos(6 * x) * np.cos(5 * y) + 0.1 * y]
+    slopes += [-0.25 * np.sin(6 * x) * np.sin(5 * y) + 0.1 * x]
+    normals = np.stack([*slopes, -np.ones(len(x))], axis=1)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    ones, count = np.ones(len(x), np.float32), np.arange(len(x))
+    return PointCloud(
+        np.stack([x, y, z], axis=1) + shift, normals.astype(np.float32), ones, ones, ones * 1e-4,
+        ones * 1e-4, (count // 201).astype(np.int32), (count % 201).astype(np.int32),
+        np.zeros(len(x), np.uint8),
+    )  # fmt: skip
+
+
+def test_a_drawing_of_thin_plates_is_laid_on_the_side_that_was_scanned(drawing):
+    """Within a quarter of a millimetre where it was off by twenty: the drawing's triangles alone
+    leave the curved blade by a tenth."""
+    shift = np.array([0.012, -0.008, 0.014])
+    reference = lay_on(load_reference(drawing), _scan(shift))
+    assert reference.alignment is not None
+    moved = reference.alignment.target_from_source.inverse()
+    assert np.linalg.norm(moved @ np.zeros((1, 3)) - shift) < 2.5e-4
+    assert reference.alignment.rms < 2e-4
+
+
+def test_a_drawing_elsewhere_is_refused(drawing):
+    with pytest.raises(Degenerate, match="do not overlap"):
+        lay_on(load_reference(drawing), _scan(np.array([0.0, 0.0, -30.0])))
