@@ -14,7 +14,7 @@ from murkscan.types.deviation import Deviation
 SPACING, STEP = 2e-3, 1e-3
 """Distance between profiles, and along them [m]."""
 NOISE = 4e-5
-"""Standard deviation of the points' errors [m], which go together over two profiles and three lines:
+"""Standard deviation of the points' errors [m], which go together over two profiles, three lines:
 as a finder's do that joins so many."""
 SEEDS = 10
 SHAPES: dict[str, Callable[[np.ndarray], np.ndarray]] = {
@@ -41,7 +41,7 @@ def scan_dent(shape: str, seed: int, *, wave: float = 0.0) -> tuple[Sample, Devi
     frame, line = np.divmod(np.arange(frames * lines), lines)
     x, y = frame * SPACING, line * STEP
     middle = side / 2 + random.uniform(-3e-3, 3e-3, 2)
-    errors = gaussian_filter(random.standard_normal((frames, lines)), (2, 3)).ravel()
+    errors = gaussian_filter(random.standard_normal((frames, lines)), (2, 3), mode="wrap").ravel()
     away = np.hypot(x - middle[0], y - middle[1]) / (width / 2)
     values = NOISE / errors.std() * errors - depth * SHAPES[shape](away)
     values += wave * np.cos(2 * np.pi * (x - middle[0]) / side)

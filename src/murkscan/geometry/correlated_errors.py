@@ -135,6 +135,28 @@ def covariance_of_sums(
     return found * _widen(cells, reach)
 
 
+def variance_of_sum(weights: Scalars, errors: Scalars, profile: Indices, line: Indices) -> float:
+    """Give the variance of a weighted sum of errors, from their size and reach alone.
+
+    What is left by a smooth surface does not sum to anything any more, however far the surface is
+    off as a whole; its size and reach still tell by how much. Errors are taken to be alike at no
+    distance, and less and less up to the reach.
+
+    Args:
+        weights: Weight of each error in the sum.
+        errors: How far each point is off from a smooth surface [m].
+        profile: Number of each point's profile.
+        line: Number of each point's scan line.
+    """
+    cells = _Cells.of(profile, line)
+    reach = _find_reach(cells, errors)
+    shares = [1 - np.abs(np.arange(-r + 1, r)) / r for r in reach]
+    filled = cells.fill(weights)
+    spread = convolve1d(filled, shares[0], axis=0, mode="constant")
+    spread = convolve1d(spread, shares[1], axis=1, mode="constant")
+    return float((filled * spread).sum() * np.mean(errors**2)) * _widen(cells, reach)
+
+
 def _find_reach(cells: _Cells, residuals: Scalars) -> tuple[int, int]:
     values, there = cells.fill(residuals), cells.fill(np.ones_like(residuals))
     values = np.divide(values, there, out=np.zeros_like(values), where=there > 0)

@@ -59,7 +59,8 @@ def _nearest(sample: Sample, end: Vector) -> int:
 
 
 def _directions(sample: Sample, which: Indices) -> Points:
-    """Give the direction in which each end errs: its ray, or its normal where none is known."""
+    """Give the direction in which each end errs: its ray; where none is known, the worst one."""
     if sample.sight is not None:
         return sample.sight.rays[which]
-    return sample.cloud.normals[which].astype(float)
+    between = np.diff(sample.cloud.points[which], axis=0)
+    return np.repeat(between / max(float(np.linalg.norm(between)), 1e-300), 2, axis=0)

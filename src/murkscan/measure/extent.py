@@ -3,15 +3,16 @@
 import math
 
 import numpy as np
+import trimesh
 
 from ..errors import NotEnoughData
-from ..geometry.correlated_errors import covariance_of_sums
-from ..geometry.height_map import MapFrame, smooth_map
-from ..types.arrays import Points, Scalars
+from ..geometry.correlated_errors import variance_of_sum
+from ..types.arrays import Scalars, Vector
 from ..types.measurement import Measurement
 from ..types.mesh import Mesh
 from ..types.plane import Plane
 from ..types.quantity import Quantity
+from .height_errors import find_height_errors
 from .sample import Sample
 from .selection import Selection
 from .surface import area_vectors, nearest_points, rig_modes, rim_lengths, usual_noise
@@ -19,28 +20,33 @@ from .trust import Trust
 
 _TILT = 0.05
 """Standard deviation of a cloud's normals [rad], to which they are smoothed."""
-_EDGE = 4.0
-"""Robust standard deviations beyond which a height differs from its neighbours by shape."""
-_GAUSSIAN = 1.4826
-_SMOOTH_CELLS = 3.0
-"""Cells of the map over which heights are averaged, to tell noise from shape."""
+_HALVINGS = 3
+"""How often the sides of triangles on the border of a selection are halved."""
 
 
 def cut_out(mesh: Mesh, selection: Selection | None) -> Mesh:
-    """Give the triangles whose three corners lie in a part of space.
+    """Give the part of a surface that lies in a part of space.
+
+    Triangles on its border are divided into 64, of which those count whose middle lies inside:
+    whole ones would leave out half a triangle's width all around.
 
     Raises:
-        NotEnoughData: There are none.
+        NotEnoughData: There is none.
     """
     if selection is None:
         return mesh
-    inside = selection.contains(mesh.vertices)[mesh.faces].all(axis=1)
-    if not inside.any():
+    corners = selection.contains(mesh.vertices)[mesh.faces]
+    inside, cut = corners.all(axis=1), corners.any(axis=1) & ~corners.all(axis=1)
+    vertices, small = mesh.vertices, mesh.faces[cut]
+    for _ in range(_HALVINGS):
+        vertices, small = trimesh.remesh.subdivide(vertices, small)
+    small = small[selection.contains(vertices[small].mean(axis=1))]
+    if not inside.any() and len(small) == 0:
         raise NotEnoughData(
             f"None of the {len(mesh.faces)} triangles lies in the selection; choose another part."
         )
-    used, faces = np.unique(mesh.faces[inside], return_inverse=True)
-    return Mesh(mesh.vertices[used], faces.reshape(-1, 3))
+    used, faces = np.unique(np.concatenate([mesh.faces[inside], small]), return_inverse=True)
+    return Mesh(vertices[used], faces.reshape(-1, 3))
 
 
 def measure_area(mesh: Mesh, sample: Sample) -> Measurement:
@@ -62,7 +68,7 @@ def measure_area(mesh: Mesh, sample: Sample) -> Measurement:
     area = float(np.where(length > 0, seen, flat).sum())
     rim = rim_lengths(mesh)
     noise = usual_noise(sample)
-    own = math.hypot(noise * float(np.sqrt((rim**2).sum())), _TILT**2 / 2 * area)
+    own = math.hypot(noise * float(np.sqrt((rim**2).sum())), _TILT**2 / 2 * area / math.sqrt(3))
     unit = vectors / np.maximum(flat, 1e-300)[:, None]
     share = np.where(length > 0, seen, flat)
     common = None
@@ -75,7 +81,7 @@ def measure_area(mesh: Mesh, sample: Sample) -> Measurement:
 
 
 def measure_volume(
-    mesh: Mesh, sample: Sample, plane: Plane, *, trust: tuple[Trust, Points] | None = None
+    mesh: Mesh, sample: Sample, plane: Plane, *, trust: tuple[Trust, Vector] | None = None
 ) -> Measurement:
     """Give the volume between a surface and a plane: what stands out less what lies behind.
 
@@ -84,7 +90,7 @@ def measure_volume(
         sample: The points it was made of.
         plane: The plane, its normal towards the side that counts positive.
         trust: How far the plane is to be trusted, where it was fitted to the same scan, and the
-            mean of the points it was fitted to (1 3), about which its tilts are.
+            mean of the points it was fitted to, about which its tilts are.
 
     Raises:
         NotEnoughData: The surface stands upright on the plane.
@@ -98,12 +104,8 @@ def measure_volume(
     volume = float(shadows @ heights[mesh.faces].mean(axis=1))
     weights = np.bincount(mesh.faces.ravel(), np.repeat(shadows / 3, 3), len(mesh.vertices))
     number = nearest_points(sample, mesh.vertices)
-    errors = _height_errors(mesh.vertices, heights, plane)
-    used = weights != 0
-    own = covariance_of_sums(
-        weights[used, None], errors[used], sample.profile[number][used], sample.line[number][used]
-    )
-    variance = float(own[0, 0])
+    errors = find_height_errors(mesh.vertices, plane.normal, noise=usual_noise(sample))
+    variance = variance_of_sum(weights, errors, sample.profile[number], sample.line[number])
     if trust is not None:
         how = _plane_slopes(mesh, plane, shadows, base, trust[1])
         variance += float(how @ trust[0].independent @ how)
@@ -125,7 +127,7 @@ def _common_volume(
     plane: Plane,
     shadows: Scalars,
     base: float,
-    trust: tuple[Trust, Points] | None,
+    trust: tuple[Trust, Vector] | None,
 ) -> float | None:
     """Give how the rig's errors change the volume, by a surface that they move as a whole [m³]."""
     if (modes := rig_modes(sample)) is None:
@@ -146,22 +148,8 @@ def _common_volume(
 
 
 def _plane_slopes(
-    mesh: Mesh, plane: Plane, shadows: Scalars, base: float, middle: Points
-) -> Scalars:
+    mesh: Mesh, plane: Plane, shadows: Scalars, base: float, middle: Vector
+) -> Vector:
     """Give the change of the volume with the plane's two tilts and its place."""
     centres = mesh.vertices[mesh.faces].mean(axis=1) - middle
     return shadows @ plane.slopes(centres)
-
-
-def _height_errors(vertices: Points, heights: Scalars, plane: Plane) -> Scalars:
-    """Give how far each corner lies from the smoothed surface, along the plane's normal [m]."""
-    normals = np.broadcast_to(plane.normal, vertices.shape)
-    area = float(np.prod(np.sort(np.ptp(vertices, axis=0))[1:]))
-    cell = 2 * math.sqrt(max(area, 1e-12) / len(vertices))
-    frame = MapFrame.over(vertices, normals, cell)
-    located = frame.locate(vertices)
-    mean, _ = smooth_map(*frame.gather(located, heights), sigma=_SMOOTH_CELLS)
-    errors = heights - mean[frame.cells_of(located)]
-    # At an edge the smoothed surface is what errs.
-    limit = _EDGE * _GAUSSIAN * float(np.median(np.abs(errors)))
-    return np.clip(errors, -limit, limit)

@@ -100,9 +100,12 @@ def measure_section(
 def _extent(name: str, values: Scalars, axis: Vector, numbers: Indices, sample: Sample) -> Quantity:
     """Give the distance of the outermost corners along a drawing's axis."""
     ends = numbers[[int(np.argmin(values)), int(np.argmax(values))]]
-    rays = sample.cloud.normals[ends] if sample.sight is None else sample.sight.rays[ends]
+    # Where nobody knows from where an end was seen, it may err along the axis.
+    rays = np.tile(axis, (2, 1)) if sample.sight is None else sample.sight.rays[ends]
     noise = noise_at(sample, sample.cloud.points[ends])
-    independent = float(np.linalg.norm((rays @ axis) * noise))
+    # Points err along their rays; smoothing then moves the surface along its normals.
+    smoothed = sample.cloud.normals[ends].astype(float) @ axis
+    independent = float(np.linalg.norm(np.maximum(np.abs(rays @ axis), np.abs(smoothed)) * noise))
     common = None
     if sample.shifts is not None:
         shifts = sample.shifts(ends)

@@ -148,7 +148,7 @@ def measure_above(
         measured = measure_volume(mesh, sample, base)
     else:
         fit, trust = trust_plane(load_sample(project, base))
-        measured = measure_volume(mesh, sample, fit.shape, trust=(trust, fit.middle[None]))
+        measured = measure_volume(mesh, sample, fit.shape, trust=(trust, fit.middle))
     save_measurement(project, name, measured)
     return measured
 
