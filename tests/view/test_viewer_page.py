@@ -94,6 +94,13 @@ def drawn(page):
     return off
 
 
+def redrawn(page):
+    """Give the picture after it has been drawn anew, as a model at rest is."""
+    page.evaluate("murkscan.stage.invalidate()")
+    rest(page)
+    return picture(page).astype(int)
+
+
 def click(page, point):
     """Click where the page shows a point of the world [m]."""
     x, y = page.evaluate(
@@ -312,6 +319,36 @@ def test_one_finger_turns_and_two_zoom(phone):
     drag(((180, 350), (120, 350)), ((220, 350), (280, 350)))
     # Fingers four times as far apart: the controls begin to count at their first step.
     assert 2 < page.evaluate(where)[-1] / zoom <= 4.1
+
+
+def test_a_surface_finer_than_the_pixels_is_drawn_with_fewer_triangles(browser, tmp_path):
+    count = 300
+    y, x = (axis.ravel() for axis in np.mgrid[0 : 0.1 : count * 1j, 0 : 0.1 : count * 1j])
+    points = np.stack([x, y, 0.5 + 0.01 * np.sin(60 * x)], axis=1)
+    a = np.arange(count**2).reshape(count, count)
+    a, b, c, d = (part.ravel() for part in (a[:-1, :-1], a[:-1, 1:], a[1:, :-1], a[1:, 1:]))
+    faces = np.concatenate([np.stack([a, c, b], axis=1), np.stack([b, c, d], axis=1)])
+    file = tmp_path / "index.html"
+    file.write_text(render_viewer([model_of_points("bed", points, faces=faces)], title="bed"))
+    page, faults = open_page(browser, file)
+    assert page.evaluate("murkscan.stage.drawings[0].coarse") is None
+    page.evaluate("murkscan.stage.zoomBy(1 / 6)")
+    rest(page)
+    few = redrawn(page)
+    left = page.evaluate("murkscan.stage.drawings[0].coarse.geometry.index.count / 3")
+    # Cells of three spacings hold about nine points, so about a ninth is left.
+    assert len(faces) / 12 < left < len(faces) / 6
+    assert not page.evaluate("murkscan.stage.drawings[0].surface.visible")
+    page.evaluate("murkscan.stage.drawings[0].coarse.removeFromParent()")
+    page.evaluate("Object.assign(murkscan.stage.drawings[0], {prepare() {}, coarse: null})")
+    many = redrawn(page)
+    assert page.evaluate("murkscan.stage.drawings[0].surface.visible")
+    drawn = np.abs(many - many[300, -330]).max(axis=2) > 24
+    assert drawn.sum() > 1000
+    # Places move by less than a pixel: only the rim and steep colours may change.
+    assert (np.abs(few - many).max(axis=2) > 24).sum() < 0.1 * drawn.sum()
+    assert faults == []
+    page.close()
 
 
 def test_on_a_phone_a_tool_opens_at_a_tap_and_leaves_the_model_in_sight(phone):

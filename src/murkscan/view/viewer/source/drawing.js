@@ -3,10 +3,12 @@
 import {
   BufferAttribute, BufferGeometry, DataTexture, Group, LinearFilter, Mesh, Points, RGBAFormat,
 } from "three";
+import { coarsen } from "./coarsen.js";
 import { makeMaterials } from "./material.js";
 import { colourTable } from "./unpack.js";
 
 const SEED = 1;
+const CELL = 3; // of the coarse surface, in usual spacings: about a ninth of the triangles is left
 
 export class Drawing {
   constructor(model, maps) {
@@ -24,11 +26,12 @@ export class Drawing {
     this.points.geometry.setDrawRange(0, model.measured);
     this.sample = new Points(this.geometry(shuffled(model.measured)), points);
     this.parts = [this.points, this.sample];
+    this.coarse = null;
     if (model.faces.length) {
-      this.surface = new Mesh(this.geometry(model.faces), surface);
-      if (model.surface !== model.positions) {
-        this.surface.geometry.setAttribute("position", new BufferAttribute(model.surface, 3));
-      }
+      this.material = surface;
+      this.corners = model.surface === model.positions
+        ? this.attributes.position : new BufferAttribute(model.surface, 3);
+      this.surface = this.meshOf(model.faces);
       this.parts.push(this.surface);
     }
     for (const part of this.parts) part.frustumCulled = false;
@@ -44,6 +47,23 @@ export class Drawing {
     }
     if (index) geometry.setIndex(new BufferAttribute(index, 1));
     return geometry;
+  }
+
+  meshOf(faces) {
+    const mesh = new Mesh(this.geometry(faces), this.material);
+    mesh.geometry.setAttribute("position", this.corners);
+    return mesh;
+  }
+
+  // Makes the coarse surface, once it is finer than a pixel [m].
+  prepare(pixel) {
+    if (!this.surface || this.coarse || CELL * this.model.spacing > pixel) return;
+    const { model } = this;
+    this.coarse = this.meshOf(coarsen(model.surface, model.faces, CELL * model.spacing));
+    this.coarse.geometry.setAttribute("value", this.surface.geometry.getAttribute("value"));
+    this.coarse.frustumCulled = this.coarse.visible = false;
+    this.parts.push(this.coarse);
+    this.group.add(this.coarse);
   }
 
   // Null for plain.
@@ -64,15 +84,20 @@ export class Drawing {
     this.uniforms.cut.value = plane ? [...plane.normal, plane.offset] : [0, 0, 0, 1];
   }
 
-  // With less, a fair sample of so many points stands for everything.
-  choose(kind, budget) {
-    const coarse = budget < this.model.measured;
-    const asSurface = kind === "surface" && this.surface;
-    this.sample.visible = coarse;
-    this.points.visible = !coarse && !asSurface;
-    if (this.surface) this.surface.visible = !coarse && asSurface;
-    if (coarse) this.sample.geometry.setDrawRange(0, budget);
-    return coarse ? budget : this.model.measured;
+  // With less, a fair sample of so many points stands for everything. Where even the coarse surface
+  // is finer than a pixel [m], it stands for the whole one.
+  choose(kind, budget, pixel) {
+    const { model } = this;
+    const less = budget < model.measured;
+    const asSurface = kind === "surface" && Boolean(this.surface);
+    const asCoarse = asSurface && !less && Boolean(this.coarse) && CELL * model.spacing < pixel;
+    this.sample.visible = less;
+    this.points.visible = !less && !asSurface;
+    if (this.surface) this.surface.visible = asSurface && !less && !asCoarse;
+    if (this.coarse) this.coarse.visible = asCoarse;
+    if (less) this.sample.geometry.setDrawRange(0, budget);
+    this.drawn = asCoarse ? model.vertices / CELL ** 2 : model.vertices;
+    return less ? budget : model.measured;
   }
 }
 

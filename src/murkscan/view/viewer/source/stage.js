@@ -25,6 +25,7 @@ export class Stage {
     this.camera = new OrthographicCamera(-1, 1, 1, -1, 0, 10);
     this.drawings = [];
     this.cost = 0; // ms of the last full frame
+    this.drawn = 0; // vertices of it
     this.moving = false;
     this.listeners = []; // told before each frame
     this.kind = "surface";
@@ -183,10 +184,12 @@ export class Stage {
     const visible = this.drawings.find((one) => one.group.visible);
     if (!visible || !this.size) return;
     for (const listener of this.listeners) listener();
+    const pixel = 1 / this.scale;
+    if (!this.moving) visible.prepare(pixel);
     const budget = this.moving && this.cost > QUICK
-      ? Math.max(FEWEST, (visible.model.vertices * QUICK) / this.cost)
+      ? Math.max(FEWEST, (this.drawn * QUICK) / this.cost)
       : Infinity;
-    const count = visible.choose(this.kind, Math.floor(budget));
+    const count = visible.choose(this.kind, Math.floor(budget), pixel);
     this.isCoarse = count < visible.model.measured;
     const gap = visible.model.spacing * Math.sqrt(visible.model.measured / count);
     const ratio = this.renderer.getPixelRatio();
@@ -199,6 +202,7 @@ export class Stage {
     const gl = this.renderer.getContext();
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
     this.cost = performance.now() - start;
+    this.drawn = visible.drawn;
     this.canvas.dataset.frames = 1 + Number(this.canvas.dataset.frames ?? 0);
     this.canvas.dataset.cost = this.cost.toFixed(1);
   }
