@@ -11,13 +11,14 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from murkscan.cli.main import run
-from murkscan.errors import Degenerate, FormatError, InputError, MissingResult
+from murkscan.errors import Degenerate, FormatError, InputError, MissingResult, NotEnoughData
 from murkscan.io.cloud_files import load_cloud_file, writing_cloud_file
 from murkscan.io.ply import save_cloud
 from murkscan.project import Project
 from murkscan.survey.cloud import build_cloud
 from murkscan.survey.export import export_cloud
 from murkscan.survey.merge import merge_passes
+from murkscan.survey.mesh import export_mesh
 from murkscan.survey.profile_blocks import cut_blocks
 from murkscan.types.pose import Pose
 from murkscan.types.profile import Profile
@@ -147,6 +148,20 @@ def test_exports_without_sense_are_refused_and_write_nothing(project, tmp_path, 
     assert sorted(path.name for path in tmp_path.iterdir()) == ["empty", "scan"]
 
 
+@pytest.mark.parametrize("stage", ["cloud", "mesh", "measure", "view/deeper"])
+def test_no_export_lands_among_what_the_stages_of_any_scan_have_made(
+    project, tmp_path, cloud, stage
+):
+    other = as_project(tmp_path / "other", cloud)
+    for root in (project.root, other.root):
+        (root / stage).mkdir(parents=True, exist_ok=True)
+        for export in (export_cloud, export_mesh):
+            with pytest.raises(InputError, match="lies among the files of the"):
+                export(project, root / stage / "mesh.ply")
+        assert not (root / stage / "mesh.ply").exists()
+    assert export_cloud(project, project.root / "dive.ply") == len(cloud)
+
+
 def drifted(cloud, *, seed=0):
     """The same wall once more, with a log that is millimetres off."""
     random = np.random.default_rng(seed)
@@ -215,26 +230,39 @@ def test_what_cannot_be_merged_is_one_sentence_and_writes_nothing(project, tmp_p
         b"property float y\nproperty float z\nend_header\n"
     )
     as_project(tmp_path / "profile", cloud[cloud.frame == 3][:20])
+    np.savetxt(tmp_path / "mm.xyz", 1e3 * cloud.points)
+    wild = np.where(cloud.frame % 2, np.int32(2**31 - 1), np.int32(-(2**31)))
+    with writing_cloud_file(tmp_path / "frames.ply") as write:
+        write(replace(cloud, frame=wild))
     for other, error, says in (
         ("empty.xyz", InputError, "no points; leave it out"),
         ("lies.ply", FormatError, "declares 4000000000 points"),
         ("nowhere", MissingResult, "does not exist"),
-        ("profile", Exception, "Need at least 30 points"),
+        ("profile", NotEnoughData, "profile cannot be laid .*Need at least 30 points"),
+        ("mm.xyz", NotEnoughData, r"mm.xyz .* measures \d+ m, and they 0\.\d+ m. .* in metres"),
+        ("frames.ply", InputError, "frames from -2147483648 to 2147483647"),
     ):
         with pytest.raises(error, match=says):
             merge_passes([project.root, tmp_path / other], out)
+        assert not out.exists()
+    for voxel in (np.inf, 1e-9):
+        with pytest.raises(InputError, match="voxel"):
+            merge_passes([project.root], out, voxel=voxel)
         assert not out.exists()
     with pytest.raises(InputError, match="holds a scan"):
         merge_passes([project.root, project.root], project.root)
 
 
-def test_points_of_others_that_are_not_finite_are_left_out(project, tmp_path, cloud):
+def test_points_of_others_that_are_not_finite_are_left_out_and_counted(project, tmp_path, cloud):
     broken = replace(cloud, points=cloud.points.copy())
     broken.points[::2] = np.nan
     with writing_cloud_file(tmp_path / "other.ply") as write:
         write(broken)
     result = merge_passes([project.root, tmp_path / "other.ply"], tmp_path / "out")
     assert result["points"] == len(cloud) + len(cloud) // 2
+    broken = len(cloud) - len(cloud) // 2
+    assert [one["left_out"] for one in result["passes"]] == [0, broken]
+    assert f"{broken:,} points that are not finite were left out" in result["passes"][1]["words"]
 
 
 def test_the_commands_merge_export_and_go_on(project, tmp_path, capsys, cloud):

@@ -157,3 +157,26 @@ def test_a_folder_is_used_again_but_no_photos_are_lost(tmp_path):
     with pytest.raises(ms.InputError, match="not of a simulation"):
         simulate_recording(shorter, tmp_path / "mine")
     assert (tmp_path / "mine/frames/a.png").read_bytes() == b"a photo"
+
+
+@pytest.mark.parametrize("name", ["rig.toml", "poses.csv", "scan.json", "cloud/cloud.ply"])
+def test_a_folder_that_no_simulation_has_made_stays_as_it_is(tmp_path, name):
+    mine = tmp_path / name
+    mine.parent.mkdir(exist_ok=True)
+    mine.write_text("mine")
+    with pytest.raises(ms.InputError, match="not of a simulation; give a new folder"):
+        simulate_recording(_scene([("frames = 6", "frames = 1")])[0], tmp_path)
+    assert mine.read_text() == "mine"
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_a_simulation_that_was_stopped_is_made_anew_in_its_folder(tmp_path):
+    scene, _ = _scene([("frames = 6", "frames = 2")])
+
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        simulate_recording(scene, tmp_path, progress=stop)
+    assert (tmp_path / "rig.toml").exists()
+    assert simulate_recording(scene, tmp_path).num_pictures == 2

@@ -44,11 +44,11 @@ def cloud(
 
     if voxel_mm is not None and not export:
         raise InputError("--voxel-mm thins what is exported; say where to with --export FILE.")
-    if voxel_mm is not None and not voxel_mm > 0:
+    if voxel_mm is not None and not 0 < voxel_mm < float("inf"):
         raise InputError(f"--voxel-mm must be above 0, got {voxel_mm:g}.")
     project = Project(out)
     for path in export:
-        check_export(project, path)
+        check_export(path)
     rules = (Doubtful(min_posterior), Sparse(), SeenThrough())
     with progress_bars() as progress:
         if is_merged(project):

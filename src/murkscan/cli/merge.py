@@ -43,7 +43,7 @@ def merge(
     if not passes:
         raise InputError("Give the folders of two scans or more: murkscan merge A B --out OUT.")
     for flag, value in (("--reach-mm", reach_mm), ("--voxel-mm", voxel_mm)):
-        if value is not None and not value > 0:
+        if value is not None and not 0 < value < float("inf"):
             raise InputError(f"{flag} must be above 0, got {value:g}.")
     with progress_bars() as progress:
         result = merge_passes(

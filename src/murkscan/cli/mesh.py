@@ -40,10 +40,9 @@ def mesh(
     export
         Write the surface to this file, too: .ply, .stl, .obj or .glb; may be given again.
     """
-    from ..io.mesh_files import check_mesh_suffix
     from ..mesh import ByDepth, BySignal
     from ..project import Project
-    from ..survey.mesh import Finish, build_mesh, export_mesh
+    from ..survey.mesh import Finish, build_mesh, check_mesh_export, export_mesh
     from .summary import print_result
 
     if close_holes_mm is not None and not 0 < close_holes_mm < float("inf"):
@@ -51,7 +50,7 @@ def mesh(
     if faces is not None and faces < 4:
         raise InputError(f"--faces must be 4 or more, got {faces}.")
     for path in export:
-        check_mesh_suffix(path)
+        check_mesh_export(path)
     finish = Finish(
         largest_hole=None if close_holes_mm is None else close_holes_mm / 1e3,
         faces=faces,

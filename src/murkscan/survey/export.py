@@ -6,7 +6,7 @@ from pathlib import Path
 from ..cloud import thin_clouds
 from ..errors import InputError
 from ..io.cloud_files import check_cloud_suffix, writing_cloud_file
-from ..project import Project
+from ..project import STAGES, Project
 from ..types.cloud import PointCloud
 from .progress import Progress, silent
 
@@ -27,14 +27,14 @@ def export_cloud(
 
     Raises:
         MissingResult: The cloud stage has not been finished.
-        InputError: The suffix is no cloud's, the cloud is empty, or the file lies in the stage's
-            own folder.
+        InputError: The suffix is no cloud's, the cloud is empty, or the file lies among what a
+            stage has made.
         MissingDependency: The format needs the extra `[formats]`, which is not installed.
         DeviceError: The disk is full.
     """
     stage = project.finished("cloud")
     count = stage.counts()["points"]
-    check_export(project, path)
+    check_export(path)
     if count == 0:
         raise InputError(f"The cloud of {project.root} has no points; there is nothing to export.")
     blocks = _Blocks(project)
@@ -48,18 +48,30 @@ def export_cloud(
     return written
 
 
-def check_export(project: Project, path: Path) -> None:
+def check_export(path: Path) -> None:
     """Refuse now what `export_cloud` would refuse after an hour of other work.
 
     Raises:
-        InputError: The suffix is no cloud's, or the file lies in the stage's own folder.
+        InputError: The suffix is no cloud's, or the file lies among what a stage has made.
         MissingDependency: The format needs the extra `[formats]`, which is not installed.
     """
     check_cloud_suffix(path)
-    if (project.root / "cloud").resolve() in path.resolve().parents:
-        raise InputError(
-            f"{path} lies among the files of the cloud stage; export to another folder."
-        )
+    require_outside_stages(path)
+
+
+def require_outside_stages(path: Path) -> None:
+    """Refuse to write over what the stages of any scan have made.
+
+    Raises:
+        InputError: The file lies in a stage's folder.
+    """
+    path = path.resolve()
+    for root in path.parents:
+        stage = path.relative_to(root).parts[0]
+        if stage in (*STAGES, "measure") and (root / "scan.json").exists():
+            raise InputError(
+                f"{path} lies among the files of the {stage} stage; export to another folder."
+            )
 
 
 class _Blocks:

@@ -5,13 +5,14 @@ import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from importlib.metadata import version
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..cloud import thin_clouds
-from ..errors import Degenerate, InputError, MissingResult
+from ..errors import Degenerate, InputError, MissingResult, NotEnoughData
 from ..geometry.alignment import Alignment, align_clouds
 from ..io.cloud_files import check_cloud_suffix, iterate_cloud_file
 from ..project import Project
@@ -25,6 +26,8 @@ _SAMPLE = 2_000_000
 """Points of a pass, about, that alignment looks at."""
 _GAP = 1000
 """Frame numbers between two passes, so that none of their profiles count as neighbours."""
+_LAST_FRAME = 2**31 - 1
+"""The highest number of a frame that a cloud holds."""
 
 
 @dataclass(frozen=True)
@@ -35,16 +38,11 @@ class Pass:
 
     def __iter__(self) -> Iterator[PointCloud]:
         """Give its points in blocks; points that are not finite are left out."""
-        blocks = (
-            Project(self.path).iterate_cloud()
-            if self.path.is_dir()
-            else iterate_cloud_file(self.path)
-        )
-        for block in blocks:
+        for block in self._blocks():
             yield block[np.isfinite(block.points).all(axis=1)]
 
-    def count(self) -> int:
-        """Count its points.
+    def count(self) -> tuple[int, int]:
+        """Count its points, and those that are left out.
 
         Raises:
             MissingResult: There is no such folder or file, or it has no finished cloud.
@@ -54,10 +52,18 @@ class Pass:
             raise MissingResult(f"{self.path} does not exist; give a scan's folder or a cloud.")
         if not self.path.is_dir():
             check_cloud_suffix(self.path)
-        count = sum(map(len, self))
+        count = total = 0
+        for block in self._blocks():
+            count += int(np.isfinite(block.points).all(axis=1).sum())
+            total += len(block)
         if count == 0:
             raise InputError(f"{self.path} has no points; leave it out.")
-        return count
+        return count, total - count
+
+    def _blocks(self) -> Iterator[PointCloud]:
+        if self.path.is_dir():
+            return Project(self.path).iterate_cloud()
+        return iterate_cloud_file(self.path)
 
 
 def merge_passes(
@@ -80,12 +86,15 @@ def merge_passes(
         progress: Told how many passes are aligned.
 
     Returns:
-        points, and passes: for each its path, frames, correction and words for it.
+        points, and passes: for each its path, frames, points that were left out since they are
+        not finite, correction, and words for it.
 
     Raises:
-        InputError: out is no new folder, or a pass is empty.
+        InputError: out is no new folder, a pass is empty or numbers its frames too high, or the
+            voxels are too small for where the points lie.
         MissingResult: A pass does not exist, or has no finished cloud.
         FormatError: A file is damaged.
+        NotEnoughData: A pass is no surface, or far larger or smaller than the others.
         Degenerate: A pass overlaps none of the others.
         DeviceError: The disk is full.
     """
@@ -97,9 +106,12 @@ def merge_passes(
     if out.resolve() in [path.resolve() for path in paths]:
         raise InputError(f"{out} is one of the passes; give a new folder with --out.")
     since = time.monotonic()
-    counts = [one.count() for one in passes]
+    counts, left_out = zip(*(one.count() for one in passes), strict=True)
     aligned = _align_all(passes, counts, reach, progress) if align else [None] * len(passes)
-    told, moved = _place(passes, aligned)
+    told, moved = _place(passes, aligned, left_out)
+    blocks = iter(moved if voxel is None else thin_clouds(moved, voxel))
+    # What is refused is refused by now, before anything is written.
+    blocks = chain([next(blocks)], blocks)
     project.save_scan(_record(paths))
     settings = {"align": align, "reach": reach, "voxel": voxel}
     inputs = {"passes": [[str(one.path), count] for one, count in zip(passes, counts, strict=True)]}
@@ -107,7 +119,7 @@ def merge_passes(
     stage.begin()
     points = 0
     with project.writing_cloud() as write:
-        for block in moved if voxel is None else thin_clouds(moved, voxel):
+        for block in blocks:
             write(block)
             points += len(block)
     result = {"points": points, "outliers": 0, "passes": told}
@@ -142,29 +154,39 @@ class _Moved:
                     block,
                     points=pose @ block.points,
                     normals=(block.normals @ pose.rotation.T).astype(np.float32),
-                    frame=block.frame + np.int32(first),
+                    frame=(block.frame.astype(np.int64) + first).astype(np.int32),
                 )
 
 
 def _place(
-    passes: Sequence[Pass], aligned: Sequence[Alignment | None]
+    passes: Sequence[Pass], aligned: Sequence[Alignment | None], left_out: Sequence[int]
 ) -> tuple[list[dict[str, Any]], _Moved]:
     told, first_frames, following = [], [], 0
-    for one, alignment in zip(passes, aligned, strict=True):
+    for one, alignment, broken in zip(passes, aligned, left_out, strict=True):
         frames = [(int(b.frame.min()), int(b.frame.max())) for b in one if len(b)]
         low, high = min(low for low, _ in frames), max(high for _, high in frames)
+        if following + high - low > _LAST_FRAME:
+            raise InputError(
+                f"{one.path} numbers its frames from {low} to {high}, for which there is no room; "
+                "remove its column frame."
+            )
         first_frames.append(following - low)
         told.append(
             {
                 "path": str(one.path),
                 "frames": [following, following + high - low],
-                "words": describe_alignment(alignment),
+                "left_out": broken,
+                "words": describe_alignment(alignment) + _say_left_out(broken),
                 "alignment": alignment_as_json(alignment),
             }
         )
         following += high - low + _GAP
     poses = [Pose.identity() if a is None else a.target_from_source for a in aligned]
     return told, _Moved(passes, poses, first_frames)
+
+
+def _say_left_out(count: int) -> str:
+    return f"; {count:,} points that are not finite were left out" if count else ""
 
 
 def _align_all(
@@ -184,6 +206,12 @@ def _align_all(
             except Degenerate as error:
                 refusal = error
                 continue
+            except NotEnoughData as error:
+                raise NotEnoughData(
+                    f"{passes[number].path} cannot be laid on the passes before it: it measures "
+                    f"{_size(source):.3g} m, and they {_size(placed):.3g} m. Give clouds of "
+                    f"surfaces in metres. ({error})"
+                ) from error
             found[number] = alignment
             pose = alignment.target_from_source
             source = replace(
@@ -198,6 +226,10 @@ def _align_all(
         else:
             raise Degenerate(f"{passes[waiting[-1]].path}: {refusal}") from refusal
     return [found[number] for number in range(len(passes))]
+
+
+def _size(cloud: PointCloud) -> float:
+    return float(np.linalg.norm(np.ptp(cloud.points, axis=0)))
 
 
 def _sample(one: Pass, count: int) -> PointCloud:

@@ -14,6 +14,7 @@ from ..mesh import AbstractMesher, AbstractPaint, ByDepth, close_holes, decimate
 from ..project import Project
 from ..types.cloud import PointCloud
 from ..types.mesh import Mesh
+from .export import require_outside_stages
 from .progress import Progress, silent
 from .settings import describe
 
@@ -86,13 +87,24 @@ def export_mesh(project: Project, path: Path) -> int:
 
     Raises:
         MissingResult: The mesh stage has not been finished.
-        InputError: The suffix is another, or there is no surface.
+        InputError: The suffix is another, the file lies among what a stage has made, or there is
+            no surface.
         DeviceError: The disk is full or cannot be written.
     """
-    check_mesh_suffix(path)
+    check_mesh_export(path)
     mesh = project.load_mesh()
     save_mesh(path, mesh)
     return len(mesh.faces)
+
+
+def check_mesh_export(path: Path) -> None:
+    """Refuse now what `export_mesh` would refuse after other work.
+
+    Raises:
+        InputError: The suffix is no mesh's, or the file lies among what a stage has made.
+    """
+    check_mesh_suffix(path)
+    require_outside_stages(path)
 
 
 def _finish(mesh: Mesh, cloud: PointCloud, finish: Finish) -> tuple[Mesh, dict[str, int]]:

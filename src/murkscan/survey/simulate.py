@@ -30,6 +30,10 @@ _FASTEST = 500.0
 """Pictures a second that a video's times can tell apart."""
 _PART = 64
 """Frames whose truth is written at once."""
+_MARK = "truth"
+"""The folder that only simulations have, and have from the beginning."""
+_NO_WORK = ("stage.json",)
+"""What may lie in a new folder: the demo's note of what it simulates."""
 
 Keep = Callable[[np.ndarray, float], None]
 """Keeps one picture and its time [s]."""
@@ -59,14 +63,16 @@ def simulate_recording(
 
     Args:
         scene: What is recorded, by which rig, along which way.
-        out: The folder; files that are there are replaced.
+        out: The folder: a new one, or that of an earlier simulation, finished or not, whose files
+            are replaced.
         text: The scene file's text, to be kept with the truth.
         progress: Told of each frame.
 
     Raises:
-        InputError: The sheet never meets the object, or the folder holds another recording.
+        InputError: The sheet never meets the object, or the folder holds other files.
         DeviceError: The disk is full.
     """
+    _require_ours(out)
     simulator = Simulator.of(scene)
     _clear(out)
     _write_rig_and_way(scene, out)
@@ -95,17 +101,24 @@ def simulate_recording(
     return SimulatedRecording(recording, len(scene) // scene.row_step, len(scene), centres)
 
 
-def _clear(out: Path) -> None:
-    """Take away what an earlier simulation left, and nothing else."""
-    left = [out / "recording.mkv", out / "navigation.csv", out / "frames" / "times.csv"]
-    left += sorted((out / "frames").glob("*.png"))
-    left = [path for path in left if path.exists()]
-    if left and not (out / "truth").is_dir():
+def _require_ours(out: Path) -> None:
+    """Refuse a folder whose rig, poses or pictures are somebody's own."""
+    others = [file for file in sorted(out.glob("*")) if file.name not in _NO_WORK]
+    others = [file for file in others if not file.name.startswith(".")]
+    if out.is_file() or (others and not (out / _MARK).is_dir()):
         raise InputError(
-            f"{left[0]} is not of a simulation: there is no {out / 'truth'}. Give another folder."
+            f"{others[0] if others else out} is not of a simulation; give a new folder for the "
+            "recording."
         )
+
+
+def _clear(out: Path) -> None:
+    """Take away what an earlier simulation left, and mark the folder as one's before all else."""
+    (out / _MARK).mkdir(parents=True, exist_ok=True)
+    left = [out / "recording.mkv", out / "navigation.csv", out / "frames" / "times.csv"]
+    left += (file for file in (out / "frames").glob("*.png") if file.stem.isdecimal())
     for path in left:
-        path.unlink()
+        path.unlink(missing_ok=True)
 
 
 def _draw_ahead(simulator: Simulator) -> Iterator[SimulatedFrame]:
