@@ -88,13 +88,26 @@ def print_measurement(
     rows = [_row(quantity) for quantity in found.quantities]
     columns = (found.kind, "value", "± 95 %", "1σ own", "1σ common", "unit")
     print_table("", columns, rows)
-    if any(quantity.sigma_common is None for quantity in found.quantities):
+    _tell_common(out, found)
+    for kind in ("json", *suffixes):
+        say(str(out / "measure" / f"{name}.{kind}"))
+
+
+def _tell_common(out: Path, found: "Measurement") -> None:
+    """Say what the common part lacks."""
+    from ..project import Project
+    from ..survey.merged import is_merged
+
+    if is_merged(Project(out)):
+        say(
+            "The common part of a merged cloud is that of its passes' alignment; what their rigs "
+            "share is not in ± 95 %: measure one of the passes to see it."
+        )
+    elif any(quantity.sigma_common is None for quantity in found.quantities):
         say(
             "The rig file states no covariance: the common part is unknown, and not in ± 95 %; "
             "murkscan calibrate finds it."
         )
-    for kind in ("json", *suffixes):
-        say(str(out / "measure" / f"{name}.{kind}"))
 
 
 def _row(quantity: "Quantity") -> tuple[str, ...]:

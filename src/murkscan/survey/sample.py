@@ -19,6 +19,7 @@ from ..types.rig import Rig
 from ..types.trajectory import Trajectory
 from .common_part import moving_rig
 from .merged import is_merged
+from .merged_errors import trace_alignment
 from .scan_rig import load_scan_rig
 
 _FEWEST = 10
@@ -51,7 +52,9 @@ def load_sample(project: Project, selection: Selection | None = None) -> Sample:
 
 def _know_all(project: Project, cloud: PointCloud) -> Sample:
     """Say of a cloud what is known of it; of a merged one neither ways nor rigs are kept."""
-    if len(cloud) == 0 or is_merged(project):
+    if len(cloud) and is_merged(project):
+        return Sample.from_cloud(cloud, shifts=trace_alignment(project, cloud))
+    if len(cloud) == 0:
         return Sample.from_cloud(cloud)
     rig = moving_rig(project, load_scan_rig(project))
     return Sample.from_cloud(
