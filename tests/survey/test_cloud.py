@@ -18,10 +18,13 @@ from murkscan.project import Project
 from murkscan.survey.cloud import build_cloud
 from murkscan.survey.export import export_cloud
 from murkscan.survey.merge import merge_passes
+from murkscan.survey.merged import load_moments, load_way
 from murkscan.survey.mesh import export_mesh
 from murkscan.survey.profile_blocks import cut_blocks
 from murkscan.types.pose import Pose
 from murkscan.types.profile import Profile
+from murkscan.types.stripe import empty_stripe
+from murkscan.types.trajectory import Trajectory
 
 from ..scans import plane, scan, scan_cloud
 from ..scenes import air_rig
@@ -191,6 +194,45 @@ def test_two_passes_become_one_in_the_frame_of_the_first(project, tmp_path, clou
     first, other = (one["frames"] for one in result["passes"])
     assert first[1] + 2 < other[0]
     assert other == [int(moved.frame.min()), int(moved.frame.max())]
+
+
+def followed(project, attitude):
+    """Add the poses of a camera that looks along an attitude, a frame a millimetre."""
+    cloud = project.load_cloud()
+    frames = np.unique(cloud.frame)
+    extract = project.stage("extract", settings={"laser": 0}, inputs={})
+    extract.begin()
+    columns = {"frames": frames.tolist(), "times": (frames / 25).tolist()}
+    columns |= {"points": [], "skips": []}
+    project.save_stripe_part(0, empty_stripe(), columns)
+    extract.finish({"frames": len(frames), "points": len(cloud), "skips": []}, since=0.0)
+    motion = project.stage("motion", settings={}, inputs={"extract": extract.digest})
+    motion.begin()
+    count = len(frames)
+    positions = np.stack([frames * 1e-3, np.zeros(count), np.zeros(count)], axis=1)
+    quaternions = np.tile(attitude.as_quat(scalar_first=True), (count, 1))
+    project.save_trajectory(Trajectory(frames / 25, positions, quaternions))
+    motion.finish({}, since=0.0)
+    return project
+
+
+def test_merged_passes_keep_the_way_of_their_cameras(tmp_path, cloud):
+    """In the frame of the first, a pose a frame: by it pictures are turned upright."""
+    second, pose = drifted(scan_cloud(waves, noise=1e-4, spacing=1.1e-3))
+    attitude = Rotation.from_euler("z", 20, degrees=True)
+    followed(as_project(tmp_path / "a", cloud), attitude)
+    followed(as_project(tmp_path / "b", second), attitude)
+    merge_passes([tmp_path / "a", tmp_path / "b"], tmp_path / "out")
+    merged = Project(tmp_path / "out")
+    way, moments = load_way(merged), load_moments(merged)
+    assert set(np.unique(merged.load_cloud().frame)) == set(moments.frame)
+    other = way.at(way.times[np.isin(moments.frame, np.unique(cloud.frame), invert=True)])
+    turned = Rotation.from_quat(other.quaternions[0], scalar_first=True) * attitude.inv()
+    np.testing.assert_allclose(turned.as_matrix() @ pose.rotation, np.eye(3), atol=1e-3)
+    # With a cloud of which no poses are known, the whole has none.
+    as_project(tmp_path / "c", cloud)
+    merge_passes([tmp_path / "a", tmp_path / "c"], tmp_path / "out")
+    assert load_way(merged) is None
 
 
 def test_a_plain_wall_says_what_it_leaves_open(tmp_path):

@@ -28,7 +28,7 @@ from ..view.render import render
 from ..view.values import SignedValues
 from ..view.views import standard_views
 from .measured import as_plain, measure_file, save_measurement
-from .merged import is_merged
+from .merged import load_way
 from .reference import Reference
 from .sample import load_sample
 
@@ -131,8 +131,7 @@ def _save_points(project: Project, name: str, sample: Sample, deviation: Deviati
 def _draw(project: Project, name: str, surface: Mesh, sample: Sample, deviation: Deviation) -> None:
     """Draw the scan's surface, coloured by its deviation."""
     colours = SignedValues(sample.cloud.points, deviation.values)
-    trajectory = None if is_merged(project) else project.load_trajectory()
-    for view in standard_views(trajectory):
+    for view in standard_views(load_way(project)):
         if view.name in _PICTURES:
             picture = render(surface, view, colours=colours)
             write_image(measure_file(project, f"{name}-{view.name}", "png"), picture)

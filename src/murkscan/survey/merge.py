@@ -1,6 +1,7 @@
 """Lay passes over one object on another, and merge them into one cloud."""
 
 import platform
+import shutil
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -18,8 +19,9 @@ from ..io.cloud_files import check_cloud_suffix, iterate_cloud_file
 from ..project import Project
 from ..types.cloud import PointCloud
 from ..types.pose import Pose
+from ..types.trajectory import Trajectory
 from .alignment_words import alignment_as_json, describe_alignment
-from .merged import is_merged
+from .merged import is_merged, load_moments, load_way
 from .progress import Progress, silent
 
 _SAMPLE = 2_000_000
@@ -40,6 +42,21 @@ class Pass:
         """Give its points in blocks; points that are not finite are left out."""
         for block in self._blocks():
             yield block[np.isfinite(block.points).all(axis=1)]
+
+    def way(self, low: int, high: int) -> Trajectory | None:
+        """Give the poses at its frames, their numbers for times; None where it has no poses."""
+        if not self.path.is_dir():
+            return None
+        project = Project(self.path)
+        try:
+            way, moments = load_way(project), load_moments(project)
+        except MissingResult:
+            return None
+        if way is None or moments is None:
+            return None
+        inside = (moments.frame >= low) & (moments.frame <= high)
+        poses = way.at(moments.time[inside])
+        return replace(poses, times=moments.frame[inside].astype(float))
 
     def count(self) -> tuple[int, int]:
         """Count its points, and those that are left out.
@@ -124,7 +141,23 @@ def merge_passes(
             points += len(block)
     result = {"points": points, "outliers": 0, "passes": told}
     stage.finish(result, since=since)
+    _follow(project, moved, since)
     return result
+
+
+def _follow(project: Project, moved: "_Moved", since: float) -> None:
+    """Write where the camera was, pass after pass, if each pass knows it."""
+    ways = list(moved.ways())
+    known = [way for way in ways if way is not None]
+    stage = project.stage("motion", settings={}, inputs={"cloud": project.finished("cloud").digest})
+    if len(known) < len(ways):
+        shutil.rmtree(stage.folder, ignore_errors=True)
+        return
+    stage.begin()
+    columns = ("times", "positions", "quaternions")
+    joined = (np.concatenate([getattr(way, name) for way in known]) for name in columns)
+    project.save_trajectory(Trajectory(*joined))
+    stage.finish({"poses": sum(len(way.times) for way in known)}, since=since)
 
 
 def _record(paths: Sequence[Path]) -> dict[str, Any]:
@@ -146,6 +179,16 @@ class _Moved:
     passes: Sequence[Pass]
     poses: Sequence[Pose]
     first_frames: Sequence[int]
+    """What is added to each pass's frame numbers."""
+    frames: Sequence[tuple[int, int]]
+    """First and last frame of each pass that has points, by its own count."""
+
+    def ways(self) -> Iterator[Trajectory | None]:
+        """Give the poses of each pass, with the merged cloud's frame numbers for times."""
+        rows = zip(self.passes, self.poses, self.first_frames, self.frames, strict=True)
+        for one, pose, first, (low, high) in rows:
+            way = one.way(low, high)
+            yield None if way is None else replace(way.carry(pose), times=way.times + first)
 
     def __iter__(self) -> Iterator[PointCloud]:
         for one, pose, first in zip(self.passes, self.poses, self.first_frames, strict=True):
@@ -161,7 +204,7 @@ class _Moved:
 def _place(
     passes: Sequence[Pass], aligned: Sequence[Alignment | None], left_out: Sequence[int]
 ) -> tuple[list[dict[str, Any]], _Moved]:
-    told, first_frames, following = [], [], 0
+    told, first_frames, ranges, following = [], [], [], 0
     for one, alignment, broken in zip(passes, aligned, left_out, strict=True):
         frames = [(int(b.frame.min()), int(b.frame.max())) for b in one if len(b)]
         low, high = min(low for low, _ in frames), max(high for _, high in frames)
@@ -171,6 +214,7 @@ def _place(
                 "remove its column frame."
             )
         first_frames.append(following - low)
+        ranges.append((low, high))
         told.append(
             {
                 "path": str(one.path),
@@ -182,7 +226,7 @@ def _place(
         )
         following += high - low + _GAP
     poses = [Pose.identity() if a is None else a.target_from_source for a in aligned]
-    return told, _Moved(passes, poses, first_frames)
+    return told, _Moved(passes, poses, first_frames, ranges)
 
 
 def _say_left_out(count: int) -> str:

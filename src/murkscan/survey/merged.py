@@ -2,8 +2,12 @@
 
 from contextlib import suppress
 
+import numpy as np
+
 from ..errors import FormatError, InputError, MissingResult
 from ..project import Project
+from ..types.frame_times import FrameTimes
+from ..types.trajectory import Trajectory
 
 
 def is_merged(project: Project) -> bool:
@@ -24,3 +28,29 @@ def require_recording(project: Project) -> None:
             f"{project.root} was merged from other scans and has no recording of its own; give one "
             "of those, or another folder."
         )
+
+
+def load_way(project: Project) -> Trajectory | None:
+    """Give how the camera went through the world; None for clouds of which one has no poses.
+
+    Raises:
+        MissingResult: A scan's motion stage has not been finished.
+    """
+    try:
+        return project.load_trajectory()
+    except MissingResult:
+        if is_merged(project):
+            return None
+        raise
+
+
+def load_moments(project: Project) -> FrameTimes | None:
+    """Give the time of each frame; None where no poses are known.
+
+    Merged scans follow on one another, whenever they were made: the frame's number stands for its
+    time.
+    """
+    if not is_merged(project):
+        return project.load_frame_times()
+    way = load_way(project)
+    return None if way is None else FrameTimes(way.times.astype(np.uint32), way.times)

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from ..errors import MissingResult
 from ..io.mesh_files import check_mesh_suffix, save_mesh
 from ..mesh import AbstractMesher, AbstractPaint, ByDepth, close_holes, decimate
 from ..project import Project
 from ..types.cloud import PointCloud
 from ..types.mesh import Mesh
 from .export import require_outside_stages
+from .merged import load_way
 from .progress import Progress, silent
 from .settings import describe
 
@@ -128,11 +128,9 @@ def _towards(paint: AbstractPaint | None, project: Project) -> AbstractPaint | N
     """Count depth in the mean direction in which the camera looked, where that is known."""
     if not isinstance(paint, ByDepth):
         return paint
-    try:
-        trajectory = project.load_trajectory()
-    # A merged cloud has none: its world has the axes of the first scan's camera.
-    except MissingResult:
+    way = load_way(project)
+    if way is None:
         return paint
-    attitudes = Rotation.from_quat(trajectory.quaternions, scalar_first=True)
+    attitudes = Rotation.from_quat(way.quaternions, scalar_first=True)
     x, y, z = (float(part) for part in attitudes.mean().apply(np.array([0.0, 0.0, 1.0])))
     return ByDepth((x, y, z))

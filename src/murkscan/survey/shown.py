@@ -12,7 +12,7 @@ from ..project import Project
 from ..types.cloud import PointCloud
 from ..view import Layer, Model, choose_fairly, model_of_scan
 from .measured import measure_file
-from .merged import is_merged
+from .merged import is_merged, load_moments, load_way
 from .shift_field import trace_shift_field
 
 DEVIATION = "deviation"
@@ -40,8 +40,8 @@ def load_model(project: Project, *, most: int, deviation: str = DEVIATION) -> Mo
         choose_points(project, most),
         num_points=total,
         mesh=project.load_mesh() if has_surface(project) else None,
-        trajectory=project.load_trajectory() if is_scan else None,
-        frames=project.load_frame_times() if is_scan else None,
+        trajectory=load_way(project),
+        frames=load_moments(project),
         is_timed=is_scan and project.load_scan()["recording"]["is_timed"],
         shift_field=trace_shift_field(project) if is_scan else None,
         most=most,

@@ -8,7 +8,7 @@ from ..page import Gallery, Note, Picture, Section, render_page
 from ..project import Project
 from ..view import MOST, PICTURES, draw_pictures, render_viewer
 from .compared import Compared, compare_models
-from .merged import is_merged
+from .merged import load_way
 from .progress import Progress, silent
 from .shown import DEVIATION, deviation_digest, load_model, title_of
 
@@ -94,8 +94,7 @@ def _draw(project: Project, progress: Progress) -> list[str]:
     names: list[str] = []
     if project.finished("mesh").counts()["faces"]:
         progress("view", 0, len(PICTURES))
-        trajectory = None if is_merged(project) else project.load_trajectory()
-        for name, picture in draw_pictures(project.load_mesh(), trajectory):
+        for name, picture in draw_pictures(project.load_mesh(), load_way(project)):
             project.save_picture(name, picture)
             names.append(name)
             progress("view", len(names), len(PICTURES))
