@@ -38,7 +38,7 @@ def deviation(
     out
         Folder of the scan, with finished cloud and mesh stages.
     reference
-        A .ply, .stl or .glb file, or the folder of an earlier scan.
+        A .ply, .stl, .obj or .glb file, or the folder of an earlier scan.
     unit
         Unit of the file.
     as_given
@@ -86,7 +86,7 @@ def dents(
     out
         Folder of the scan, with finished cloud and mesh stages.
     reference
-        A .ply, .stl or .glb file, or the folder of an earlier scan.
+        A .ply, .stl, .obj or .glb file, or the folder of an earlier scan.
     unit
         Unit of the file.
     as_given

@@ -52,7 +52,7 @@ def load_reference(path: Path, *, unit: str = "m") -> Reference:
     """Read a mesh file, or the surface of a finished scan's folder, as it is.
 
     Args:
-        path: A .ply, .stl or .glb file, or a scan's folder.
+        path: A .ply, .stl, .obj or .glb file, or a scan's folder.
         unit: Unit of the file: m, cm, mm or in.
 
     Raises:
