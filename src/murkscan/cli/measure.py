@@ -7,7 +7,16 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import App, Parameter
 
 from ..errors import InputError
-from .measure_part import PartFlags, Place, print_measurement, read_place, read_plane
+from .measure_part import (
+    CloudScan,
+    MeshScan,
+    Name,
+    PartFlags,
+    Place,
+    print_measurement,
+    read_place,
+    read_plane,
+)
 
 if TYPE_CHECKING:
     from ..measure import Sample
@@ -58,19 +67,15 @@ def measure(
 
 
 @app.command
-def distance(out: Path, *, from_m: Place, to_m: Place, name: str = "distance") -> None:
+def distance(out: CloudScan, *, from_m: Place, to_m: Place, name: Name = "distance") -> None:
     """Measure between two points of the scan.
 
     Parameters
     ----------
-    out
-        Folder of the scan, with a finished cloud stage.
     from_m
         Where it begins, as X,Y,Z read off cloud.ply [m]; the nearest point of the scan counts.
     to_m
         Where it ends [m].
-    name
-        What to call it: OUT/measure/NAME.json.
     """
     import numpy as np
 
@@ -86,48 +91,24 @@ def distance(out: Path, *, from_m: Place, to_m: Place, name: str = "distance") -
 
 
 @app.command
-def plane(out: Path, *, part: PartFlags = PartFlags(), name: str = "plane") -> None:
-    """Fit a plane to a part of the scan.
-
-    Parameters
-    ----------
-    out
-        Folder of the scan, with a finished cloud stage.
-    name
-        What to call it: OUT/measure/NAME.json.
-    """
+def plane(out: CloudScan, *, part: PartFlags = PartFlags(), name: Name = "plane") -> None:
+    """Fit a plane to a part of the scan."""
     from ..measure import measure_plane
 
     _measure_part(out, measure_plane, part, name)
 
 
 @app.command
-def sphere(out: Path, *, part: PartFlags = PartFlags(), name: str = "sphere") -> None:
-    """Fit a sphere to a part of the scan.
-
-    Parameters
-    ----------
-    out
-        Folder of the scan, with a finished cloud stage.
-    name
-        What to call it: OUT/measure/NAME.json.
-    """
+def sphere(out: CloudScan, *, part: PartFlags = PartFlags(), name: Name = "sphere") -> None:
+    """Fit a sphere to a part of the scan."""
     from ..measure import measure_sphere
 
     _measure_part(out, measure_sphere, part, name)
 
 
 @app.command
-def cylinder(out: Path, *, part: PartFlags = PartFlags(), name: str = "cylinder") -> None:
-    """Fit a cylinder to a part of the scan, such as a pipe or a pile.
-
-    Parameters
-    ----------
-    out
-        Folder of the scan, with a finished cloud stage.
-    name
-        What to call it: OUT/measure/NAME.json.
-    """
+def cylinder(out: CloudScan, *, part: PartFlags = PartFlags(), name: Name = "cylinder") -> None:
+    """Fit a cylinder to a part of the scan, such as a pipe or a pile."""
     from ..measure import measure_cylinder
 
     _measure_part(out, measure_cylinder, part, name)
@@ -135,7 +116,7 @@ def cylinder(out: Path, *, part: PartFlags = PartFlags(), name: str = "cylinder"
 
 @app.command
 def section(
-    out: Path,
+    out: MeshScan,
     *,
     point_m: Place,
     normal: Place,
@@ -146,8 +127,6 @@ def section(
 
     Parameters
     ----------
-    out
-        Folder of the scan, with finished cloud and mesh stages.
     point_m
         A point of the plane, as X,Y,Z [m].
     normal

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from .measure_part import PartFlags, print_measurement
+from .measure_part import MeshScan, PartFlags, print_measurement
 from .words import print_table, say
 
 if TYPE_CHECKING:
@@ -14,19 +14,29 @@ if TYPE_CHECKING:
     from ..survey.reference import Reference
     from ..types.dent import Dent
 
-Unit = Literal["m", "cm", "mm", "in"]
-Flag = Annotated[bool, Parameter(negative=())]
+Unit = Annotated[Literal["m", "cm", "mm", "in"], Parameter(help="Unit of the file.")]
+AsGiven = Annotated[
+    bool,
+    Parameter(
+        negative=(),
+        help="Take the reference where it is, in the scan's world; otherwise it is laid on the "
+        "scan by ICP.",
+    ),
+]
+FilesName = Annotated[
+    str, Parameter(help="What to call it: OUT/measure/NAME.json, .ply, .csv, .png.")
+]
 
 
 def deviation(
-    out: Path,
+    out: MeshScan,
     *,
     reference: Path,
     unit: Unit = "m",
-    as_given: Flag = False,
+    as_given: AsGiven = False,
     reach_mm: float = 50.0,
     part: PartFlags = PartFlags(),
-    name: str = "deviation",
+    name: FilesName = "deviation",
 ) -> None:
     """Compare the scan with a drawing's mesh or an earlier scan.
 
@@ -35,19 +45,10 @@ def deviation(
 
     Parameters
     ----------
-    out
-        Folder of the scan, with finished cloud and mesh stages.
     reference
         A .ply, .stl, .obj or .glb file, or the folder of an earlier scan.
-    unit
-        Unit of the file.
-    as_given
-        Take the reference where it is, in the scan's world; otherwise it is laid on the scan by
-        ICP.
     reach_mm
         Distance beyond which a point of the scan is none of the reference's [mm].
-    name
-        What to call it: OUT/measure/NAME.json, .ply, .csv, .png.
     """
     from ..project import Project
     from ..survey.deviation import compare_scan
@@ -66,16 +67,16 @@ def deviation(
 
 
 def dents(
-    out: Path,
+    out: MeshScan,
     *,
     reference: Path | None = None,
     unit: Unit = "m",
-    as_given: Flag = False,
+    as_given: AsGiven = False,
     smallest_mm: float = 20.0,
     largest_mm: float = 150.0,
     least_depth_mm: float = 0.0,
     part: PartFlags = PartFlags(),
-    name: str = "dents",
+    name: FilesName = "dents",
 ) -> None:
     """Find dents and bumps: where the scan departs from a reference by more than chance.
 
@@ -83,23 +84,14 @@ def dents(
 
     Parameters
     ----------
-    out
-        Folder of the scan, with finished cloud and mesh stages.
     reference
         A .ply, .stl, .obj or .glb file, or the folder of an earlier scan.
-    unit
-        Unit of the file.
-    as_given
-        Take the reference where it is, in the scan's world; otherwise it is laid on the scan by
-        ICP.
     smallest_mm
         Width of the smallest dent looked for [mm].
     largest_mm
         Width of the largest one [mm]: wider shapes are taken for the hull's own.
     least_depth_mm
         Depth below which none is told [mm].
-    name
-        What to call it: OUT/measure/NAME.json, .ply, .csv, .png.
     """
     from ..project import Project
     from ..survey.deviation import search_dents

@@ -1,33 +1,38 @@
 """murkscan measure step, area and volume."""
 
-from pathlib import Path
 
 from ..errors import InputError
-from .measure_part import MaybePlace, PartFlags, Place, print_measurement, read_place, read_plane
+from .measure_part import (
+    CloudScan,
+    MaybePlace,
+    MeshScan,
+    Name,
+    PartFlags,
+    Place,
+    print_measurement,
+    read_place,
+    read_plane,
+)
 
 
 def step(
-    out: Path,
+    out: CloudScan,
     *,
     first_m: Place,
     second_m: Place,
     within_mm: float,
-    name: str = "step",
+    name: Name = "step",
 ) -> None:
     """Measure the step between two parallel planes; positive where the second is nearer.
 
     Parameters
     ----------
-    out
-        Folder of the scan, with a finished cloud stage.
     first_m
         A place in the middle of the first plane, as X,Y,Z [m].
     second_m
         A place in the middle of the second.
     within_mm
         How far from these places points are taken [mm]; keep clear of edges.
-    name
-        What to call it: OUT/measure/NAME.json.
     """
     from ..measure import Ball
     from ..project import Project
@@ -40,16 +45,8 @@ def step(
     print_measurement(out, name, measure_stairs(Project(out), first, second, name=name))
 
 
-def area(out: Path, *, part: PartFlags = PartFlags(), name: str = "area") -> None:
-    """Measure the area of the surface, as far as it was scanned.
-
-    Parameters
-    ----------
-    out
-        Folder of the scan, with finished cloud and mesh stages.
-    name
-        What to call it: OUT/measure/NAME.json.
-    """
+def area(out: MeshScan, *, part: PartFlags = PartFlags(), name: Name = "area") -> None:
+    """Measure the area of the surface, as far as it was scanned."""
     from ..project import Project
     from ..survey.measure import measure_covered
 
@@ -58,14 +55,14 @@ def area(out: Path, *, part: PartFlags = PartFlags(), name: str = "area") -> Non
 
 
 def volume(
-    out: Path,
+    out: MeshScan,
     *,
     point_m: MaybePlace = None,
     normal: MaybePlace = None,
     base_near_m: MaybePlace = None,
     base_within_mm: float | None = None,
     part: PartFlags = PartFlags(),
-    name: str = "volume",
+    name: Name = "volume",
 ) -> None:
     """Measure the volume between the surface and a plane, or inside a closed surface.
 
@@ -74,8 +71,6 @@ def volume(
 
     Parameters
     ----------
-    out
-        Folder of the scan, with finished cloud and mesh stages.
     point_m
         A point of the plane, as X,Y,Z [m].
     normal
@@ -84,8 +79,6 @@ def volume(
         Middle of the flat part that the plane is fitted to, as X,Y,Z [m].
     base_within_mm
         How far that part reaches from there [mm].
-    name
-        What to call it: OUT/measure/NAME.json.
     """
     from ..measure import Ball
     from ..project import Project
