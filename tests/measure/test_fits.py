@@ -1,6 +1,7 @@
 """Fitted shapes, and how far to trust them."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -159,3 +160,13 @@ def test_too_few_points_and_points_without_a_place_are_refused():
         fit_sphere(np.array([[np.nan, 0, 0], *np.random.default_rng(0).normal(size=(5, 3))]))
     with pytest.raises(NotEnoughData, match="no points"):
         Sample.from_cloud(scans.scan_cloud(scans.plane)[:0])
+
+
+def test_points_of_other_programs_are_numbered_by_place_and_get_normals():
+    cloud = scans.scan_cloud(scans.plane, spacing=2e-3, noise=1e-4)
+    zero = np.zeros_like(cloud.frame)
+    bare = replace(cloud, frame=zero, scan_line=zero, normals=np.zeros_like(cloud.normals))
+    known, found = (measure_plane(Sample.from_cloud(c))["distance"] for c in (cloud, bare))
+    assert found.value == pytest.approx(known.value)
+    # Independent noise: both tell its effect to a part that depends on how they are numbered.
+    assert 0.5 < found.half_width / known.half_width < 2

@@ -103,16 +103,20 @@ def _tell_common(out: Path, found: "Measurement") -> None:
     from ..project import Project
     from ..survey.merged import is_merged
 
-    if is_merged(Project(out)):
+    common = [quantity.sigma_common for quantity in found.quantities]
+    if not is_merged(Project(out)):
+        if None in common:
+            say(
+                "The rig file states no covariance: the common part is unknown, and not in ± 95 %; "
+                "murkscan calibrate finds it."
+            )
+    elif any(common):
         say(
             "The common part of a merged cloud is that of its passes' alignment; what their rigs "
             "share is not in ± 95 %: measure one of the passes to see it."
         )
-    elif any(quantity.sigma_common is None for quantity in found.quantities):
-        say(
-            "The rig file states no covariance: the common part is unknown, and not in ± 95 %; "
-            "murkscan calibrate finds it."
-        )
+    else:
+        say("The cloud says nothing of the errors that its points share: ± 95 % lacks them.")
 
 
 def _row(quantity: "Quantity") -> tuple[str, ...]:

@@ -58,7 +58,7 @@ def _turn_alike(points: Points, normals: Directions, near: Near) -> Float[np.nda
     # An edge of weight 0 would be none.
     weights = np.maximum(1.0 - alike, 0.0) + 1e-6
     graph = sparse.csr_matrix((weights, (here, there.ravel())), shape=(len(points),) * 2)
-    tree = minimum_spanning_tree(graph.maximum(graph.T))
+    tree = sparse.csr_matrix(minimum_spanning_tree(graph.maximum(graph.T)))
     count, piece = connected_components(tree, directed=False)
     sign = np.ones(len(points))
     by_depth = np.argsort(points[:, 2], kind="stable")

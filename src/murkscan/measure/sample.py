@@ -8,8 +8,9 @@ from jaxtyping import Float
 
 from ..errors import NotEnoughData
 from ..geometry.grid import ScanGrid
+from ..geometry.point_normals import estimate_point_normals
 from ..geometry.stripe_blur import Sight
-from ..types.arrays import Indices, Mask
+from ..types.arrays import Indices, Mask, Points
 from ..types.cloud import PointCloud
 
 Shifts = Float[np.ndarray, "n 3 modes"]
@@ -42,6 +43,9 @@ class Sample:
     ) -> "Sample":
         """Take all points of a cloud.
 
+        Those of other programs, which know no profiles, are numbered by where they lie on the plane
+        along which they spread most, and get normals where they have none.
+
         Args:
             cloud: The points.
             sight: From where each was seen.
@@ -57,7 +61,11 @@ class Sample:
                 "to see what was found in the frames."
             )
         grid = ScanGrid.from_cloud(cloud)
-        return cls(cloud, grid.profile, grid.line, sight, shifts)
+        if grid.is_numbered:
+            return cls(cloud, grid.profile, grid.line, sight, shifts)
+        if not cloud.normals.any():
+            cloud = replace(cloud, normals=estimate_point_normals(cloud.points))
+        return cls(cloud, *_number_places(cloud.points), sight, shifts)
 
     def __len__(self) -> int:
         """Count the points."""
@@ -74,3 +82,14 @@ class Sample:
             sight=None if self.sight is None else self.sight[which],
             shifts=None if shifts is None else lambda some: shifts(numbers[some]),
         )
+
+
+def _number_places(points: Points) -> tuple[Indices, Indices]:
+    """Give row and column of each point among squares that hold about one."""
+    off = points - points.mean(axis=0)
+    axes = np.linalg.eigh(off.T @ off)[1][:, 1:]
+    along = off @ axes
+    extent = np.ptp(along, axis=0)
+    side = max(float(np.sqrt(extent.prod() / len(points))), 1e-9)
+    row, column = np.floor((along - along.min(axis=0)) / side).astype(np.int64).T
+    return row, column
