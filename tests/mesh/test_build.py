@@ -18,7 +18,8 @@ from ..scans import holed, scan_cloud
 def project(tmp_path):
     """A cloud alone, as merging leaves it, of a wall with a hole of 40 mm."""
     project = Project(tmp_path / "out")
-    project.save_scan({"format": 1, "merged": []})
+    none = dict[str, str]()
+    project.save_scan({"format": 1, "merged": [], "versions": none, "recording": none, "rig": none})
     stage = project.stage("cloud", settings={}, inputs={})
     stage.begin()
     cloud = scan_cloud(holed, spacing=2e-3)
