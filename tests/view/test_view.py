@@ -79,6 +79,19 @@ def test_front_follows_the_cameras_attitude_in_the_world():
     np.testing.assert_allclose(front.view_from_world, np.diag([1.0, -1.0, -1.0]), atol=1e-12)
 
 
+def test_depth_is_told_from_where_the_camera_was_wherever_the_world_begins():
+    """A camera that looks along the world's x from 98 m, at points 1 to 2 m before it."""
+    times = np.arange(5) / 25
+    positions = np.stack([98 + 0 * times, times, 0 * times], axis=1)
+    attitude = Rotation.from_euler("y", 90, degrees=True).as_quat(scalar_first=True)
+    trajectory = Trajectory(times, positions, np.tile(attitude, (5, 1)))
+    front = next(view for view in standard_views(trajectory) if view.name == "front")
+    x, y, z = (float(part) for part in front.view_from_world[2])
+    points = np.array([99.0, 0, 0]) + np.linspace(0, 1, 1001)[:, None] * [1.0, 0, 0]
+    legend = Depth((x, y, z), front.start).legend(points)
+    assert (legend.low, legend.high) == pytest.approx((1005, 1995), abs=1)
+
+
 @pytest.mark.parametrize("name", VIEWS)
 def test_every_view_is_a_rotation(name):
     matrix = VIEWS[name].view_from_world

@@ -6,7 +6,7 @@ from typing import final
 import matplotlib as mpl
 import numpy as np
 
-from ..types.arrays import Mask, Points
+from ..types.arrays import Mask, Points, Scalars
 from .base import AbstractColours, Colours, Legend
 
 _COLOUR_MAP = "viridis_r"
@@ -25,13 +25,15 @@ class Depth(AbstractColours):
     """
 
     forward: tuple[float, float, float] = (0.0, 0.0, 1.0)
-    """The direction in which depth is counted, in the world frame; the world's origin has 0."""
+    """The direction in which depth is counted, in the world frame."""
+    start: float = 0.0
+    """Where along it depth is 0 [m]; the world's origin is at 0."""
 
     def legend(self, surface: Points) -> Legend | None:
         """Give the range of depths [mm], without the last half percent at either end."""
         if len(surface) == 0:
             return None
-        low, high = np.percentile(surface @ np.array(self.forward) * 1e3, [_SHARE, 100 - _SHARE])
+        low, high = np.percentile(self._depths(surface), [_SHARE, 100 - _SHARE])
         # A level surface has no range: a tenth of a millimetre keeps its rounding out of sight.
         middle, half = (low + high) / 2, max((high - low) / 2, 0.05)
         ends = float(middle - half), float(middle + half)
@@ -41,5 +43,9 @@ class Depth(AbstractColours):
         """Give each depth its colour; both sides of the surface look alike."""
         if legend is None:
             return np.zeros((len(points), 3))
-        share = (points @ np.array(self.forward) * 1e3 - legend.low) / (legend.high - legend.low)
+        share = (self._depths(points) - legend.low) / (legend.high - legend.low)
         return mpl.colormaps[legend.colour_map](share)[:, :3]
+
+    def _depths(self, points: Points) -> Scalars:
+        """Count them [mm]."""
+        return 1e3 * (points @ np.array(self.forward) - self.start)

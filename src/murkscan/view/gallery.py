@@ -42,5 +42,5 @@ def draw_pictures(
     for view in views:
         yield view.name, render(surface, view, size=size)
         if view.name in ("isometric", "front"):
-            by_depth = render(surface, view, colours=Depth((x, y, z)), size=size)
+            by_depth = render(surface, view, colours=Depth((x, y, z), front.start), size=size)
             yield f"{view.name}-depth", by_depth

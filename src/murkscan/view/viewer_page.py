@@ -152,13 +152,14 @@ def _about_depth(model: Model) -> dict[str, Any]:
     """Describe the layer that the page finds from the positions."""
     front = next(view for view in model.views if view.name == "front")
     x, y, z = (float(part) for part in front.view_from_world[2])
-    legend = Depth((x, y, z)).legend(model.vertices[_typical(model)])
+    legend = Depth((x, y, z), front.start).legend(model.vertices[_typical(model)])
     return {
         "name": "depth",
         "unit": "mm",
         "map": _DEPTH_MAP,
         "signed": False,
         "range": [legend.low, legend.high] if legend else [0.0, 1.0],
+        "start": front.start,
     }
 
 

@@ -1,11 +1,11 @@
 """From where a picture is taken."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from ..types.arrays import Matrix3
+from ..types.arrays import Matrix3, Vector
 from ..types.trajectory import Trajectory
 
 
@@ -18,6 +18,13 @@ class View:
     view_from_world: Matrix3
     """Its rows point, in the world frame, right and down in the picture, and away from the
     viewer."""
+    eye: Vector = field(default_factory=lambda: np.zeros(3))
+    """Where the camera was on average, in the world frame [m]: depth counts from there."""
+
+    @property
+    def start(self) -> float:
+        """How far the eye lies ahead of the world's origin [m]."""
+        return float(self.view_from_world[2] @ self.eye)
 
 
 _DIRECTIONS: dict[str, tuple[tuple[float, float, float], tuple[float, float, float]]] = {
@@ -43,12 +50,13 @@ def standard_views(trajectory: Trajectory | None = None) -> tuple[View, ...]:
         trajectory: How the camera went through the world; its mean attitude is the front. None: the
             world has the camera's axes.
     """
-    world_from_front = np.eye(3)
+    world_from_front, eye = np.eye(3), np.zeros(3)
     if trajectory is not None:
+        eye = trajectory.positions.mean(axis=0)
         attitudes = Rotation.from_quat(trajectory.quaternions, scalar_first=True)
         world_from_front = attitudes.mean().as_matrix()
     return tuple(
-        View(name, _look(np.array(forward, float), np.array(up, float)) @ world_from_front.T)
+        View(name, _look(np.array(forward, float), np.array(up, float)) @ world_from_front.T, eye)
         for name, (forward, up) in _DIRECTIONS.items()
     )
 

@@ -23,7 +23,7 @@ export async function loadModel(about, number, centre) {
   for (const layer of about.layers) {
     model.values[layer.name] = layer.blob
       ? decode((await blob(layer.blob, count, 1, 2))[0], layer)
-      : depths(model, about.views.front[2]);
+      : depths(model, about.views.front[2], layer.start);
   }
   model.starts = startsOf(model.moments, about.measured, about.times.length);
   model.path = about.path.map((p) => p.map((x, axis) => x + low[axis] - centre[axis]));
@@ -87,10 +87,10 @@ function decode(codes, { low, step }) {
   return values;
 }
 
-// Along the front view, counted from the world's origin [mm].
-function depths({ positions, centre }, [x, y, z]) {
+// Along the front view, counted from where the camera was on average [mm].
+function depths({ positions, centre }, [x, y, z], start) {
   const values = new Float32Array(positions.length / 3);
-  const offset = x * centre[0] + y * centre[1] + z * centre[2];
+  const offset = x * centre[0] + y * centre[1] + z * centre[2] - start;
   for (let i = 0; i < values.length; i++) {
     const p = 3 * i;
     values[i] = 1e3 * (x * positions[p] + y * positions[p + 1] + z * positions[p + 2] + offset);
