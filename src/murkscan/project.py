@@ -34,6 +34,8 @@ STAGES = ("extract", "triangulate", "motion", "cloud", "mesh", "view", "report")
 """The stages of a scan, in order."""
 
 
+_TOLD = ("recording", "rig", "versions")
+"""What scan.json tells of every scan."""
 _NOTED = ("frames", "times", "points", "skips")
 """What the note of a part of extract lists."""
 
@@ -133,10 +135,10 @@ class Project:
                 "first."
             )
         content = load_json(self.root / "scan.json")
-        if missing := {"recording", "rig", "versions"} - content.keys():
+        lost = [key for key in _TOLD if not isinstance(content.get(key), dict)]
+        if lost:
             raise FormatError(
-                f"{self.root / 'scan.json'} has lost its key {sorted(missing)[0]}; run "
-                "`murkscan scan` again."
+                f"{self.root / 'scan.json'} has lost its key {lost[0]}; run `murkscan scan` again."
             )
         return content
 

@@ -84,6 +84,25 @@ def test_a_wrong_scan_is_one_sentence_and_status_2(short, tmp_path, capfd, more,
     assert said.splitlines()[-1].startswith("murkscan: ")
 
 
+@pytest.mark.parametrize("words", [["mesh", ""], ["measure", "", "area"], ["view", "a", "--with="]])
+def test_a_word_without_letters_is_not_taken_for_the_folder_one_is_in(words, capfd):
+    assert run(words) == 2
+    assert "is empty; say what is meant" in capfd.readouterr().err
+
+
+def test_a_whole_number_is_asked_for_where_one_is_wanted(tmp_path, capfd):
+    assert run(["mesh", str(tmp_path), "--mesher", "poisson", "--set", "depth=8.5"]) == 2
+    assert "'8.5' is not a whole number" in capfd.readouterr().err
+
+
+def test_every_door_tells_of_an_interruption_in_the_same_words():
+    """An app that is called by another is asked on its own what it does then."""
+    from murkscan.cli import calibrate, main, measure
+
+    doors = [main.app, measure.app, calibrate.app]
+    assert not any(door.suppress_keyboard_interrupt for door in doors)
+
+
 def test_a_rig_without_a_laser_says_what_to_run(short, tmp_path, capfd):
     rig = (short / "rig.toml").read_text()
     bare = tmp_path / "bare.toml"

@@ -4,7 +4,9 @@ import resource
 import struct
 import subprocess
 import sys
+import warnings
 
+import laspy
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -146,13 +148,77 @@ def test_a_ply_file_of_another_program_is_read(tmp_path, kind):
         ("1 2 3 0 0 1\n", [[1, 2, 3]], 1),
         ("1 2 3 255 128 0\n", [[1, 2, 3]], 0),
         ("//Z Y X\n3 2 1\n", [[1, 2, 3]], 0),
+        ("\ufeffx,y,z\n1,2,3\n", [[1, 2, 3]], 0),
+        ("# by hand\n# in metres\n1 2 3\n", [[1, 2, 3]], 0),
     ],
 )
 def test_text_of_another_program_is_read(tmp_path, text, points, normals):
-    (tmp_path / "other.xyz").write_text(text)
+    (tmp_path / "other.xyz").write_text(text, "utf-8")
     cloud = load_cloud_file(tmp_path / "other.xyz")
     np.testing.assert_array_equal(cloud.points, points)
     assert np.linalg.norm(cloud.normals, axis=1).sum() == normals
+
+
+def test_text_of_nothing_but_remarks_has_no_points(tmp_path):
+    (tmp_path / "a.xyz").write_text("# a\n# b\n// c\n")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert len(load_cloud_file(tmp_path / "a.xyz")) == 0
+
+
+@pytest.mark.parametrize("name", ["A.LAZ", "a.laz"])
+def test_laz_is_packed_however_it_is_spelt(tmp_path, name):
+    save(tmp_path / name, some_cloud())
+    save(tmp_path / "a.las", some_cloud())
+    assert (tmp_path / name).stat().st_size < 0.9 * (tmp_path / "a.las").stat().st_size
+
+
+def _wide(path, rows):
+    """Write points with 900 other columns, 7.2 kB each."""
+    if path.suffix in (".las", ".laz"):
+        header = laspy.LasHeader(point_format=6, version="1.4")
+        header.add_extra_dims([laspy.ExtraBytesParams(f"e{k}", "3f8") for k in range(300)])
+        laspy.LasData(header, laspy.ScaleAwarePointRecord.zeros(rows, header=header)).write(path)
+        return
+    if path.suffix == ".xyz":
+        path.write_text(("1 2 3 " + "0 " * 900 + "\n") * rows)
+        return
+    names = ["x", "y", "z", *(f"c{k}" for k in range(900))]
+    kind = "ascii" if path.stem == "text" else "binary_little_endian"
+    columns = "".join(f"property double {name}\n" for name in names)
+    header = f"ply\nformat {kind} 1.0\nelement vertex {rows}\n{columns}end_header\n"
+    row = b"0 " * 903 + b"\n" if kind == "ascii" else bytes(8 * 903)
+    path.write_bytes(header.encode() + row * rows)
+
+
+@pytest.mark.parametrize("name", ["wide.laz", "wide.las", "wide.ply", "text.ply", "wide.xyz"])
+def test_points_of_many_columns_come_in_blocks_that_are_as_large_in_memory(tmp_path, name):
+    _wide(tmp_path / name, 6000)
+    blocks = [len(block) for block in iterate_cloud_file(tmp_path / name)]
+    assert sum(blocks) == 6000
+    # A block of ours is 500,000 points of 61 bytes: 31 MB.
+    assert 2000 < max(blocks) <= 36e6 / 7200
+
+
+def _sealed(page):
+    """Give a page of an E57 file with its checksum, CRC-32C."""
+    check = 0xFFFFFFFF
+    for byte in page[:1020]:
+        check ^= byte
+        for _ in range(8):
+            check = check >> 1 ^ (0x82F63B78 if check & 1 else 0)
+    return page[:1020] + struct.pack(">I", check ^ 0xFFFFFFFF)
+
+
+@pytest.mark.parametrize("told", [b"99", b"-5"])
+def test_an_e57_file_that_does_not_hold_the_points_it_declares_is_refused(tmp_path, told):
+    path = tmp_path / "cloud.e57"
+    save(path, some_cloud(50))
+    data = path.read_bytes().replace(b'recordCount="50"', b'recordCount="' + told + b'"')
+    assert data != path.read_bytes()
+    path.write_bytes(b"".join(_sealed(data[k : k + 1024]) for k in range(0, len(data), 1024)))
+    with pytest.raises(FormatError, match=f"declares {told.decode()} points .* but holds"):
+        load_cloud_file(path)
 
 
 @pytest.mark.parametrize(
@@ -169,7 +235,8 @@ def test_text_of_another_program_is_read(tmp_path, text, points, normals):
         ("a.las", b"LASF", "is not a LAS file"),
         ("a.laz", b"", "is not a LAS file"),
         ("a.e57", b"ASTM-E57" + bytes(40), "cannot be read as E57"),
-        ("a.e57", b"", "cannot be read as E57"),
+        ("a.e57", b"", "cannot be read as E57: it is damaged"),
+        ("a.las", b"LASF" + bytes(400), "declares a header"),
     ],
 )  # fmt: skip
 def test_a_malformed_file_is_refused_with_its_name(tmp_path, name, content, says):

@@ -182,6 +182,13 @@ HOSTILE = {
     f"element face 1\n{FACE}0 0 0\n3 0 0 0\n".encode(),
     "list.ply": f"ply\nformat binary_little_endian 1.0\nelement vertex 1\n{XYZ}"
     f"element face 1\n{FACE.replace('uchar', 'uint')}".encode() + b"\0" * 12 + b"\xff" * 4,
+    "short.ply": f"ply\nformat ascii 1.0\nelement vertex 3\n{XYZ}element face 9\n{FACE}"
+    "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n".encode(),
+    "parts.glb": glb(
+        tables(nodes=[{"mesh": 0}] * 10_001, scenes=[{"nodes": list(range(10_001))}])
+    ),
+    "zero.obj": b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 2/1 0/1\n",
+    "first.obj": b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2 3\n",
     "endless.ply": b"ply\nformat ascii 1.0\n",
     "far.obj": b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 999999999999\n",
     "before.obj": b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf -1 -2 -99999999\n",
@@ -220,6 +227,18 @@ def test_a_file_that_lies_about_its_sizes_costs_neither_memory_nor_time(tmp_path
     for name, (slow, text) in said.items():
         assert name in text, (name, text)
         assert not slow, name
+
+
+def test_a_text_that_is_cut_off_says_so_and_a_whole_one_is_read(tmp_path, caplog):
+    """Also with a remark that names a picture, which is nothing of ours to look for."""
+    text = f"ply\nformat ascii 1.0\ncomment TextureFile /etc/passwd\nelement vertex 4\n{XYZ}"
+    text += f"element face 2\n{FACE}0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n"
+    (tmp_path / "a.ply").write_text(text)
+    assert len(load_mesh(tmp_path / "a.ply").faces) == 2
+    assert not caplog.records
+    (tmp_path / "a.ply").write_text(text[:-8])
+    with pytest.raises(FormatError, match="declares 6 vertices and faces but holds 5 lines"):
+        load_mesh(tmp_path / "a.ply")
 
 
 def test_many_materials_cost_no_time(tmp_path):

@@ -226,6 +226,8 @@ def test_the_through_hull_is_a_recess_with_an_edge_before_the_shell():
         (lambda: Cylinder(0.1, math.inf), "length"),
         (lambda: Stairs(tread=0.0), "tread"),
         (lambda: Stairs(heights=()), "heights"),
+        (lambda: Stairs(heights=tuple(k * 1e-6 for k in range(20_000))), "20000 treads"),
+        (lambda: Stairs(tread=1e-6, heights=(0.0, 1e6)), "fewer treads, or longer ones"),
         (lambda: Stairs(heights=(0.01, -0.01)), "heights"),
         (lambda: Chessboard(1, 6, 0.03), "columns"),
         (lambda: Chessboard(9, 6, 0.0), "square"),

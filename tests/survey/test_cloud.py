@@ -325,6 +325,7 @@ def test_the_commands_merge_export_and_go_on(project, tmp_path, capsys, cloud):
         (["cloud", out, "--voxel-mm", "3"], "--export FILE"),
         (["cloud", out, "--export", "a.docx"], "no suffix of a cloud"),
         (["triangulate", out], "was merged from other scans and has no recording"),
+        (["report", out], "was merged from other scans and has no recording"),
     ):
         assert run(wrong) == 2
         assert says in capsys.readouterr().err

@@ -47,7 +47,7 @@ def read(scanned, name) -> dict:
 
 def test_a_measure_is_printed_and_written_with_units_and_interval(scanned, capsys):
     assert measure(scanned, "plane", "--near-m", middle(scanned), "--within-mm", "30") == 0
-    assert "± 95 %" in capsys.readouterr().out
+    assert "±95%" in capsys.readouterr().out
     found = read(scanned, "plane")
     assert found["kind"] == "plane"
     low, high = found["quantities"]["distance_m"]["interval_95"]

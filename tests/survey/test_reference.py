@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from murkscan import Degenerate, Mesh, PointCloud
+from murkscan import Degenerate, FormatError, InputError, Mesh, PointCloud
 from murkscan.io.mesh_files import save_mesh
 from murkscan.survey.reference import lay_on, load_reference
 
@@ -66,6 +66,19 @@ def test_a_drawing_of_thin_plates_is_laid_on_the_side_that_was_scanned(drawing):
     moved = reference.alignment.target_from_source.inverse()
     assert np.linalg.norm(moved @ np.zeros((1, 3)) - shift) < 2.5e-4
     assert reference.alignment.rms < 2e-4
+
+
+def test_triangles_piled_up_in_one_place_are_refused(tmp_path):
+    """Each of them would be the nearest to each point."""
+    faces = "f " + "1 2 3 " * 1001 + "\n"
+    (tmp_path / "pile.obj").write_text("v 0 0 1\nv 1 0 1\nv 0 1 1\n" + faces)
+    with pytest.raises(FormatError, match=r"pile\.obj has [\d,]+ triangles in one place"):
+        load_reference(tmp_path / "pile.obj")
+
+
+def test_a_scan_is_in_metres_whatever_unit_is_asked_for(tmp_path):
+    with pytest.raises(InputError, match="which is in metres; leave out the unit mm"):
+        load_reference(tmp_path, unit="mm")
 
 
 def test_a_drawing_elsewhere_is_refused(drawing):

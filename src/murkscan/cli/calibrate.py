@@ -17,7 +17,11 @@ if TYPE_CHECKING:
 _LEAST_SQUARE, _MOST_SQUARE = 0.5, 1000.0
 """Sides of squares that a board can have [mm]; what lies outside was meant in another unit."""
 
-app = App(name="calibrate", help="Find out what the camera and the laser are.")
+app = App(
+    name="calibrate",
+    help="Find out what the camera and the laser are.",
+    suppress_keyboard_interrupt=False,
+)
 app.command(
     "murkscan.cli.calibrate_port:port",
     name="port",

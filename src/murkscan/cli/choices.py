@@ -64,7 +64,8 @@ def _parse(setting: str, text: str, kind: Any) -> int | float:
     try:
         number = int(text) if kind in (int, int | None) else float(text)
     except ValueError as error:
-        raise InputError(f"--set {setting}: {text!r} is not a number.") from error
+        wanted = "a whole number" if kind in (int, int | None) else "a number"
+        raise InputError(f"--set {setting}: {text!r} is not {wanted}.") from error
     if not abs(number) < _LARGEST:
         raise InputError(f"--set {setting}: {text} is not a number below {_LARGEST:g}.")
     return number

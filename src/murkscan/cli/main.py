@@ -55,6 +55,11 @@ def main() -> None:
 def run(arguments: list[str]) -> int:
     """Run one command and give its exit status."""
     WORDS.set(tuple(arguments))
+    for number, word in enumerate(arguments):
+        # A path of no letters would mean the folder one happens to be in.
+        if not word or (word.startswith("--") and word.endswith("=")):
+            typed = " ".join(["murkscan", *arguments[: number + 1]]).rstrip(" =")
+            return _say(f"what follows `{typed}` is empty; say what is meant.", 2)
     try:
         app(
             arguments,

@@ -32,6 +32,7 @@ app = App(
     help="Take measures of a scan, each with its uncertainty; `murkscan measure WHAT --help` tells "
     "what each wants to know.",
     usage="Usage: murkscan measure OUT WHAT [OPTIONS]\n",
+    suppress_keyboard_interrupt=False,
 )
 for _file, _name, _help in (
     ("extent", "step", "Measure the step between two parallel planes."),

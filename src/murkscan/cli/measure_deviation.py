@@ -121,7 +121,7 @@ def _load(project: "Project", path: Path, unit: Unit, as_given: bool) -> "Refere
 def _print_dents(search: "DentSearch") -> None:
     if search.dents:
         columns = ("", "x [mm]", "y [mm]", "z [mm]", "depth [mm]", "diameter [mm]", "volume [cm³]")
-        print_table("Dents (± 95 %)", columns, [_row(dent) for dent in search.dents])
+        print_table("Dents (±95%)", columns, [_row(dent) for dent in search.dents])
     else:
         say("No dent was found.")
     say(

@@ -91,7 +91,7 @@ def print_measurement(
 ) -> None:
     """Print a measurement as a table, and where it was written."""
     rows = [_row(quantity) for quantity in found.quantities]
-    columns = (found.kind, "value", "± 95 %", "1σ own", "1σ common", "unit")
+    columns = (found.kind, "value", "±95%", "1σ own", "1σ common", "unit")
     print_table("", columns, rows)
     _tell_common(out, found)
     for kind in ("json", *suffixes):
@@ -107,16 +107,16 @@ def _tell_common(out: Path, found: "Measurement") -> None:
     if not is_merged(Project(out)):
         if None in common:
             say(
-                "The rig file states no covariance: the common part is unknown, and not in ± 95 %; "
+                "The rig file states no covariance: the common part is unknown, and not in ±95%; "
                 "murkscan calibrate finds it."
             )
     elif any(common):
         say(
             "The common part of a merged cloud is that of its passes' alignment; what their rigs "
-            "share is not in ± 95 %: measure one of the passes to see it."
+            "share is not in ±95%: measure one of the passes to see it."
         )
     else:
-        say("The cloud says nothing of the errors that its points share: ± 95 % lacks them.")
+        say("The cloud says nothing of the errors that its points share: ±95% lacks them.")
 
 
 def _row(quantity: "Quantity") -> tuple[str, ...]:

@@ -78,7 +78,8 @@ def _open_to_write(pye57: Any, path: Path) -> Iterator[Any]:
             # Otherwise pye57 closes it again when it is collected, and complains on stderr.
             del file.image_file
         if isinstance(error, pye57.libe57.E57Exception):
-            raise OSError(None, _first_line(error)) from error
+            words = "it cannot be opened, or the disk is full"
+            raise OSError(None, words) from error
         raise
 
 
@@ -89,7 +90,8 @@ def iterate_e57(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud]:
 
     Raises:
         MissingDependency: The extra is not installed.
-        FormatError: The file is no such file, or a scan of it has no coordinates.
+        FormatError: The file is no such file, or a scan of it has no coordinates, or other points
+            than it says.
         FileNotFoundError: There is no such file.
     """
     pye57 = import_pye57()
@@ -102,7 +104,10 @@ def iterate_e57(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud]:
     except (lib.E57Exception, RuntimeError, ValueError, KeyError, IndexError) as error:
         if isinstance(error, FormatError):
             raise
-        raise FormatError(f"{path} cannot be read as E57: {_first_line(error)}.") from error
+        raise FormatError(
+            f"{path} cannot be read as E57: it is damaged, or of a kind that is not known here. "
+            "Save it anew, or as .las."
+        ) from error
 
 
 def import_pye57() -> "ModuleType":
@@ -160,10 +165,17 @@ def _read_scan(lib: Any, file: Any, number: int, path: Path, block: int) -> Iter
     wanted |= {name: name for name in _INVALID if name in there}
     arrays = {name: np.zeros(block, _buffer_type(ours)) for name, ours in wanted.items()}
     reader = header.points.reader(_named_buffers(lib, file.image_file, arrays))
+    total = 0
     while count := reader.read():
+        total += count
         some = {wanted[name]: array[:count].copy() for name, array in arrays.items()}
         yield _as_cloud(some, place, world_from_scan)
     reader.close()
+    if total != header.point_count:
+        raise FormatError(
+            f"{path} declares {header.point_count} points in its scan {number} but holds {total}; "
+            "it is cut off or damaged."
+        )
 
 
 def _as_cloud(
@@ -221,7 +233,3 @@ def _named_buffers(lib: Any, image: Any, arrays: dict[str, np.ndarray]) -> Any:
     for name, array in arrays.items():
         buffers.append(lib.SourceDestBuffer(image, name, array, len(array), True, True))
     return buffers
-
-
-def _first_line(error: BaseException) -> str:
-    return (str(error).strip().splitlines() or [type(error).__name__])[0].rstrip(".")

@@ -34,7 +34,7 @@ def load_json(path: Path) -> dict[str, Any]:
     """
     try:
         content = json.loads(path.read_text("utf-8"))
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         raise FormatError(f"{path} cannot be read as JSON; delete it and run again.") from error
     if not isinstance(content, dict):
         raise FormatError(f"{path} is not what murkscan writes; delete it and run again.")

@@ -10,6 +10,7 @@ import numpy as np
 from ..errors import FormatError, InputError, MissingDependency
 from ..types.cloud import PointCloud
 from .atomic import replacing
+from .blocks import rows_at_once
 from .cloud_columns import BLOCK, COLUMNS, as_rows, from_columns, known_name
 from .las_header import check_las_header
 from .laz_chunks import check_laz_chunks
@@ -46,7 +47,7 @@ def writing_las(path: Path) -> Iterator[Callable[[PointCloud], None]]:
     header.add_extra_dims([laspy.ExtraBytesParams(name, COLUMNS[name]) for name in _EXTRA])
     is_placed = False
     with replacing(path) as aside, _blaming_the_disk():
-        writer = laspy.open(aside, mode="w", header=header, do_compress=path.suffix == ".laz")
+        writer = laspy.open(aside, mode="w", header=header, do_compress=_is_laz(path))
         with writer:
 
             def write(cloud: PointCloud) -> None:
@@ -80,6 +81,7 @@ def iterate_las(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud]:
             if reader.header.are_points_compressed:
                 check_laz_chunks(path, reader.header)
             count = reader.header.point_count
+            block = rows_at_once(reader.header.point_format.size, block)
             for start in range(0, count, block):
                 points = reader.read_points(min(block, count - start))
                 if len(points) < min(block, count - start):
@@ -98,7 +100,7 @@ def _blaming_the_disk() -> Iterator[None]:
     try:
         yield
     except lazrs.LazrsError as error:
-        raise OSError(None, _first_line(error)) from error
+        raise OSError(None, "the disk is full, or takes no more") from error
 
 
 @contextmanager
@@ -111,12 +113,23 @@ def _blaming(laspy: Any, path: Path) -> Iterator[None]:
     except (FormatError, InputError):
         raise
     except (laspy.LaspyException, lazrs.LazrsError, *_FAULTS) as error:
-        raise FormatError(f"{path} cannot be read as LAS: {_first_line(error)}.") from error
+        raise _unreadable(path) from error
     except BaseException as error:
         # What Rust throws when it finds itself in the wrong has no type that can be imported.
         if type(error).__name__ != "PanicException":
             raise
-        raise FormatError(f"{path} cannot be read as LAZ: it is damaged.") from error
+        raise _unreadable(path) from error
+
+
+def _unreadable(path: Path) -> FormatError:
+    return FormatError(
+        f"{path} cannot be read as {'LAZ' if _is_laz(path) else 'LAS'}: it is damaged, or of a "
+        "kind that is not known here. Save it anew as LAS 1.4, or as .ply."
+    )
+
+
+def _is_laz(path: Path) -> bool:
+    return path.suffix.lower() == ".laz"
 
 
 def import_laspy() -> "ModuleType":
@@ -171,7 +184,3 @@ def _require_finite(cloud: PointCloud, path: Path) -> None:
     broken = len(cloud) - int(np.isfinite(cloud.points).all(axis=1).sum())
     if broken:
         raise InputError(f"{path} cannot hold the {broken} points that are not finite.")
-
-
-def _first_line(error: BaseException) -> str:
-    return (str(error).strip().splitlines() or [type(error).__name__])[0].rstrip(".")

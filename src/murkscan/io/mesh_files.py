@@ -9,9 +9,8 @@ import trimesh
 from ..errors import FormatError, InputError
 from ..types.arrays import Colours, FaceMask, Faces
 from ..types.mesh import Mesh
-from . import mesh_glb, mesh_obj
+from . import mesh_glb, mesh_obj, mesh_ply
 from .atomic import replacing
-from .mesh_ply import as_ply
 
 _SUFFIXES = (".ply", ".stl", ".obj", ".glb")
 _GLB_FROM_OURS = np.array([1.0, -1.0, -1.0])
@@ -56,10 +55,8 @@ def load_mesh(path: Path) -> Mesh:
     """
     kind = _kind(path)
     data = path.read_bytes()
-    if kind == "glb":
-        data = mesh_glb.only_geometry(path, data)
-    if kind == "obj":
-        data = mesh_obj.only_geometry(data)
+    if kind in _STRIPPED:
+        data = _STRIPPED[kind](path, data)
     try:
         loaded = trimesh.load_mesh(trimesh.util.wrap_as_stream(data), kind, process=kind == "stl")
         vertices, faces = np.asarray(loaded.vertices, float), np.asarray(loaded.faces, np.int64)
@@ -145,5 +142,10 @@ def _find_filled(loaded: trimesh.Trimesh, count: int) -> FaceMask | None:
     return filled if len(filled) == count else None
 
 
-_WRITERS = {"ply": as_ply, "stl": _as_stl, "obj": mesh_obj.as_obj, "glb": _as_glb}
+_STRIPPED = {
+    "ply": mesh_ply.only_geometry,
+    "obj": mesh_obj.only_geometry,
+    "glb": mesh_glb.only_geometry,
+}
+_WRITERS = {"ply": mesh_ply.as_ply, "stl": _as_stl, "obj": mesh_obj.as_obj, "glb": _as_glb}
 _NAMES = {"ply": "a PLY", "stl": "an STL", "obj": "an OBJ", "glb": "a GLB"}

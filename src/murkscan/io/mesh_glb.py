@@ -11,6 +11,8 @@ _HEADER = 20
 """Bytes up to the first chunk's content."""
 _ALLOWED = 5_000_000
 """Items that a file of any size may place, since one part may stand in many places."""
+_PARTS = 10_000
+"""Parts, of which each takes about a millisecond, whatever its size."""
 _PACKED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression")
 _NODE = ("children", "mesh", "matrix", "translation", "rotation", "scale")
 
@@ -92,7 +94,14 @@ def _check_claims(path: Path, tables: dict[str, Any], most: int) -> None:
             for one in mesh["primitives"])
         for mesh in tables["meshes"]
     ]  # fmt: skip
-    placed = sum(of_mesh[node["mesh"]] for node in tables["nodes"] if "mesh" in node)
+    meshes = [node["mesh"] for node in tables["nodes"] if "mesh" in node]
+    parts = sum(len(tables["meshes"][mesh]["primitives"]) for mesh in meshes)
+    if parts > _PARTS:
+        raise FormatError(
+            f"{path} is made of {parts:,} parts, of which no more than {_PARTS:,} are read; join "
+            "them to fewer."
+        )
+    placed = sum(of_mesh[mesh] for mesh in meshes)
     claimed = max(sum(counts), sum(sizes), placed)
     if claimed > most or min([*counts, *sizes], default=0) < 0:
         raise FormatError(f"{path} claims {claimed} items, for which it is too small.")

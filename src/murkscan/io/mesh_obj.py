@@ -2,15 +2,18 @@
 
 import io
 import re
+from pathlib import Path
 
 import numpy as np
 
+from ..errors import FormatError
 from ..types.mesh import Mesh
 
 _GEOMETRY = re.compile(rb"^[vf][ \t].*$", re.MULTILINE)
 """Lines that place corners and triangles; the others name groups and materials."""
 _EXTRAS = re.compile(rb"/\S*")
 """What a corner of a face says beside its vertex: texture and normal."""
+_NO_CORNER = re.compile(rb"^f[ \t](?:.*[ \t])?[-+]?0+(?=[ \t]|$)", re.MULTILINE)
 
 
 def as_obj(mesh: Mesh) -> bytes:
@@ -28,10 +31,23 @@ def as_obj(mesh: Mesh) -> bytes:
     return text.getvalue()
 
 
-def only_geometry(data: bytes) -> bytes:
+def only_geometry(path: Path, data: bytes) -> bytes:
     """Give an OBJ file without all that is no triangle: materials, groups, textures, normals.
 
     Thousands of materials of one triangle each would cost hours.
+
+    Args:
+        path: What errors call it.
+        data: The file.
+
+    Raises:
+        FormatError: A face has the corner 0, which there is not: they count from 1.
     """
     lines = _GEOMETRY.findall(data.replace(b"\r\n", b"\n").replace(b"\\\n", b" "))
-    return _EXTRAS.sub(b"", b"\n".join(lines))
+    text = _EXTRAS.sub(b"", b"\n".join(lines))
+    if wrong := _NO_CORNER.search(text):
+        raise FormatError(
+            f"{path} has a face with the corner 0 ({wrong[0][:40].decode('ascii', 'replace')!r}), "
+            "but corners count from 1; it is damaged."
+        )
+    return text

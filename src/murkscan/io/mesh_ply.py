@@ -3,11 +3,17 @@
 At sea numbers are large.
 """
 
+import re
+from pathlib import Path
+
 import numpy as np
 
+from ..errors import FormatError
 from ..types.mesh import Mesh
 
 _COLOURS = ("red", "green", "blue")
+_END = re.compile(rb"^end_header[ \t]*\r?\n", re.MULTILINE)
+_SPOKEN = (b"comment", b"obj_info")
 
 
 def as_ply(mesh: Mesh) -> bytes:
@@ -38,3 +44,30 @@ def as_ply(mesh: Mesh) -> bytes:
         "end_header\n",
     ]
     return "\n".join(header).encode("ascii") + vertices.tobytes() + faces.tobytes()
+
+
+def only_geometry(path: Path, data: bytes) -> bytes:
+    """Give a PLY file without its comments, one of which may name a picture.
+
+    Args:
+        path: What errors call it.
+        data: The file.
+
+    Raises:
+        FormatError: It is text, and has fewer lines than its header declares.
+    """
+    end = _END.search(data)
+    if end is None:
+        raise FormatError(f"{path} is not a PLY file that can be read.")
+    lines = data[: end.start()].splitlines()
+    kept = [line for line in lines if line and not line.lower().startswith(_SPOKEN)]
+    body = memoryview(data)[end.end() :]
+    if any(line.split()[:2] == [b"format", b"ascii"] for line in kept):
+        counts = [line.split()[2] for line in kept if re.match(rb"element\s+\w+\s+\d+\s*$", line)]
+        declared, there = sum(map(int, counts)), bytes(body).strip().count(b"\n") + 1
+        if there < declared:
+            raise FormatError(
+                f"{path} declares {declared} vertices and faces but holds {there} lines; it is cut "
+                "off or damaged."
+            )
+    return b"".join([b"\n".join([*kept, b"end_header", b""]), body])

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..errors import FormatError
 from ..types.cloud import PointCloud
+from .blocks import lines_at_once, rows_at_once
 from .cloud_columns import BLOCK, COLUMNS, SCALARS, as_rows, from_columns, known_name
 from .ply import writing_rows
 
@@ -91,6 +92,7 @@ def _read_binary(file: BinaryIO, header: _Header, path: Path, block: int) -> Ite
     rows_type = np.dtype([(str(k), order + kind) for k, kind in enumerate(header.types)])
     _require_room(file, path, header, header.before + header.count * rows_type.itemsize)
     file.seek(header.before, 1)
+    block = rows_at_once(rows_type.itemsize, block)
     for begin in range(0, header.count, block):
         rows = np.fromfile(file, rows_type, min(block, header.count - begin))
         yield _as_cloud(header, [rows[str(k)] for k in range(len(header.names))])
@@ -102,15 +104,17 @@ def _read_text(file: BinaryIO, header: _Header, path: Path, block: int) -> Itera
     _require_room(file, path, header, _SHORTEST_VALUE * rows - 1)
     for _ in range(header.before):
         file.readline(_LONGEST_LINE)
-    for begin in range(0, header.count, block):
-        lines = [file.readline(_LONGEST_LINE) for _ in range(min(block, header.count - begin))]
+    lines, left = iter(lambda: file.readline(_LONGEST_LINE), b""), header.count
+    while left:
+        some = lines_at_once(lines, min(block, left))
         try:
-            values = np.loadtxt(lines, ndmin=2, usecols=range(width))
+            values = np.loadtxt(some, ndmin=2, usecols=range(width)) if some else np.empty(0)
         except ValueError as error:
             raise FormatError(f"{path} holds a line that is no {width} numbers.") from error
-        if len(values) != len(lines):
+        if not some or len(values) != len(some):
             raise FormatError(f"{path} declares {header.count} points but holds fewer.")
         yield _as_cloud(header, list(values.T))
+        left -= len(some)
 
 
 def _as_cloud(header: _Header, values: list[np.ndarray]) -> PointCloud:

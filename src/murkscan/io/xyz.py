@@ -1,9 +1,10 @@
 """Points as text, one a line: .xyz for every program, .csv with all columns."""
 
+import codecs
 import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from itertools import chain, islice
+from itertools import chain
 from pathlib import Path
 from typing import BinaryIO
 
@@ -14,9 +15,11 @@ import pyarrow.csv as pc
 from ..errors import FormatError
 from ..types.cloud import PointCloud
 from .atomic import replacing
+from .blocks import lines_at_once
 from .cloud_columns import BLOCK, COLUMNS, as_rows, from_columns, known_name
 
 _LONGEST_LINE = 4000
+_COMMENTS = ("#", "//")
 _UNIT = 1e-3
 """How far three numbers may be from unit length and still be a normal."""
 _NAMES = [*(COLUMNS.names or ())]
@@ -78,8 +81,9 @@ def iterate_xyz(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud]:
         names = _names(first)
         if first and not names:
             lines = chain([first], lines)
+        lines = (line for line in lines if not line.startswith(_COMMENTS))
         width = 0
-        while some := list(islice(lines, block)):
+        while some := lines_at_once(lines, block):
             values = _parse(some, path)
             width = width or values.shape[1]
             if values.shape[1] != width or width < 3 or (names and width != len(names)):
@@ -99,6 +103,8 @@ def iterate_xyz(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud]:
 
 def _lines(file: BinaryIO, path: Path) -> Iterator[str]:
     """Give the lines that are not empty, with blanks between the numbers."""
+    if file.read(len(codecs.BOM_UTF8)) != codecs.BOM_UTF8:
+        file.seek(0)
     while line := file.readline(_LONGEST_LINE):
         if len(line) == _LONGEST_LINE:
             raise FormatError(f"{path} has a line longer than {_LONGEST_LINE} bytes.")
@@ -124,6 +130,9 @@ def _guess(values: np.ndarray) -> list[str]:
 
 def _parse(lines: list[str], path: Path) -> np.ndarray:
     try:
-        return np.loadtxt(lines, ndmin=2, comments=("#", "//"))
+        return np.loadtxt(lines, ndmin=2, comments=_COMMENTS)
     except ValueError as error:
-        raise FormatError(f"{path} cannot be read as columns of numbers: {error}.") from error
+        raise FormatError(
+            f"{path} cannot be read as columns of numbers: a line holds something else, or more or "
+            "fewer of them than the first."
+        ) from error

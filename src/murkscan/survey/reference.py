@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import Degenerate, InputError
+from ..errors import Degenerate, FormatError, InputError
 from ..geometry.alignment import Alignment, align_surfaces
 from ..geometry.alignment_fit import no_overlap
 from ..geometry.clip import clip_mesh
@@ -20,6 +20,10 @@ from ..types.mesh import Mesh
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254}
 """Lengths of the units that meshes come in [m]."""
 
+_PILE = 1000
+"""Triangles about one middle beyond which they are no surface."""
+_SPREAD = (0x1E3779B97F4A7C15, 0x3F58476D1CE4E5B9, 0x14D049BB133111EB)
+"""Odd numbers that mix the three coordinates, as Knuth's multiplicative hash does."""
 _AROUND = 0.1
 """How far around a scan its place in the reference is looked for, in the size of the scan."""
 
@@ -56,14 +60,32 @@ def load_reference(path: Path, *, unit: str = "m") -> Reference:
         unit: Unit of the file: m, cm, mm or in.
 
     Raises:
-        InputError: The unit is unknown, or the file is of another format.
-        FormatError: The file is no mesh.
+        InputError: The unit is unknown, or given for a scan; or the file is of another format.
+        FormatError: The file is no mesh, or has thousands of triangles in one place.
         MissingResult: The folder holds no scan with a surface.
     """
     if unit not in UNITS:
         raise InputError(f"The unit must be one of {', '.join(UNITS)}, got {unit!r}.")
-    mesh = Project(path).load_mesh() if path.is_dir() else load_mesh(path)
+    if path.is_dir():
+        if unit != "m":
+            raise InputError(f"{path} is a scan, which is in metres; leave out the unit {unit}.")
+        return Reference(Project(path).load_mesh())
+    mesh = load_mesh(path)
+    _require_spread(mesh, path)
     return Reference(replace(mesh, vertices=mesh.vertices * UNITS[unit]))
+
+
+def _require_spread(mesh: Mesh, path: Path) -> None:
+    """Refuse a pile of triangles: of each point all of them would be the nearest."""
+    middles = np.ascontiguousarray(mesh.vertices[mesh.faces].mean(axis=1) + 0.0)
+    # The product runs over, as it should: equal places have equal numbers, and others hardly ever.
+    keys = (middles.view(np.int64) * np.array(_SPREAD)).sum(axis=1)
+    most = int(np.unique(keys, return_counts=True)[1].max())
+    if most > _PILE:
+        raise FormatError(
+            f"{path} has {most:,} triangles in one place; it is damaged, or has a part that is "
+            "placed as often."
+        )
 
 
 def lay_on(reference: Reference, cloud: PointCloud) -> Reference:

@@ -11,6 +11,7 @@ from ..io.json_files import load_json
 from ..project import STAGES, Project
 from ..report import ScanSummary, Shown, as_html, as_json, summarise, with_coverage
 from .kept import kept_profiles
+from .merged import require_recording
 from .progress import Progress, silent
 from .recorded import tell_recording
 from .scan_rig import load_scan_rig
@@ -30,10 +31,11 @@ def write_report(
         Counts: frames, skipped, frames_without_stripe, points.
 
     Raises:
-        InputError: The spacing is not above 0.
+        InputError: The spacing is not above 0, or the cloud was merged from other scans.
         MissingResult: The view stage has not been finished.
         DeviceError: The disk is full.
     """
+    require_recording(project)
     if spacing is not None and not 0 < spacing < math.inf:
         raise InputError(f"The wanted spacing must be above 0 mm, got {1e3 * spacing:g} mm.")
     stage = project.stage(

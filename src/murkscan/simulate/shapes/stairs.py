@@ -13,6 +13,8 @@ from .solids import enclose_blocks, refine_line
 
 _CELLS, _CELLS_ACROSS = 16, 80
 """Cells of the grid along one tread, and across the stairs."""
+_MOST_BLOCKS = 10_000_000
+"""Blocks of the grid, of which each takes about a hundred bytes."""
 
 
 @final
@@ -46,11 +48,27 @@ class Stairs(AbstractShape):
                 f"Stairs need one height or more, each 0 m or above, got heights = "
                 f"{list(self.heights)} m."
             )
+        blocks = _CELLS_ACROSS * len(self.heights) * _CELLS * self._num_layers
+        if blocks > _MOST_BLOCKS:
+            raise InputError(
+                f"Stairs of {len(self.heights)} treads of {self.tread:g} m up to "
+                f"{max(self.heights):g} m are made of {blocks:.2g} blocks, which are too many; "
+                "take fewer treads, or longer ones."
+            )
+
+    @property
+    def _depths(self) -> np.ndarray:
+        """Give z of the back and of each level [m], growing."""
+        return np.unique([self.tread, *(0.0 - np.array(self.heights))])
+
+    @property
+    def _num_layers(self) -> float:
+        """Count the layers of the grid that `refine_line` will make of the depths."""
+        return float(np.ceil(np.diff(self._depths) / (self.tread / _CELLS)).sum())
 
     def mesh(self) -> Mesh:
         """Make a closed surface: treads, risers, both sides and the back."""
-        level = 0.0 - np.array(self.heights)
-        depths = np.unique([self.tread, *level])
+        level, depths = 0.0 - np.array(self.heights), self._depths
         z = refine_line(depths[:, None], self.tread / _CELLS)[:, 0]
         y = np.arange(len(level) * _CELLS + 1) * (self.tread / _CELLS)
         x = np.linspace(-self.width / 2, self.width / 2, _CELLS_ACROSS + 1)
