@@ -55,7 +55,8 @@ class SurfacePoints:
 
         Raises:
             InputError: A point is not finite.
-            NotEnoughData: Fewer than 30 points are left.
+            NotEnoughData: Fewer than 30 points are left, or have a normal: points on a line have
+                none.
         """
         broken = len(cloud) - int(np.isfinite(cloud.points).all(axis=1).sum())
         if broken:
@@ -78,6 +79,7 @@ class SurfacePoints:
         weights = np.minimum(grid.counts / np.median(grid.counts), 1.0)
         normals = normals[sound] / length[sound, None]
         points, weights = points[sound], weights[sound]
+        _require(len(points))
         return cls(_level(points, normals, weights), normals, weights, spacing, is_oriented)
 
     @classmethod
