@@ -273,7 +273,7 @@ def test_what_cannot_be_merged_is_one_sentence_and_writes_nothing(project, tmp_p
     )
     as_project(tmp_path / "profile", cloud[cloud.frame == 3][:20])
     np.savetxt(tmp_path / "mm.xyz", 1e3 * cloud.points)
-    np.savetxt(tmp_path / "line.xyz", cloud.points[0] + np.linspace([0, 0, 0], [0.1, 0, 0], 5000))
+    np.savetxt(tmp_path / "line.xyz", np.linspace([0, 0, 0], [1, 0, 0], 5000))
     wild = np.where(cloud.frame % 2, np.int32(2**31 - 1), np.int32(-(2**31)))
     with writing_cloud_file(tmp_path / "frames.ply") as write:
         write(replace(cloud, frame=wild))
