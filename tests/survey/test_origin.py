@@ -3,11 +3,12 @@
 import json
 import os
 from datetime import datetime
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from murkscan.survey.origin import tell_origin, when_written
+from murkscan.survey.origin import name_recording, tell_origin, when_written
 from murkscan.survey.recorded import commands_of, when_began
 from murkscan.types.frame_times import FrameTimes
 
@@ -31,6 +32,22 @@ def test_the_record_of_a_calibration_is_kept_without_its_bulk(tmp_path):
         "calibration": {"camera": {"date": "2026-05-01", "verdict": "Good: all of it."}},
     }
     assert tell_origin(None, ()) == {}
+
+
+@pytest.mark.parametrize(
+    ("path", "name"),
+    [
+        ("dives/hull.mkv", "hull.mkv"),
+        ("dives/monday", "monday"),
+        ("dives/monday/frames", "monday"),
+        ("./monday/frames", "monday"),
+        ("frames", "frames"),
+        ("../frames", "frames"),
+        ("/frames", "frames"),
+    ],
+)
+def test_a_folder_of_frames_is_named_by_what_it_belongs_to(path, name):
+    assert name_recording(Path(path)) == name
 
 
 def test_a_recording_is_as_old_as_its_last_file(tmp_path):

@@ -13,7 +13,7 @@ class Recorded:
     """What was scanned."""
 
     name: str
-    """The recording's file or folder."""
+    """The recording's file or folder; what a folder of frames belongs to."""
     size: tuple[int, int]
     """Width and height of the full frame [px]."""
     fields_per_picture: int = 1

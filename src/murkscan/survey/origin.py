@@ -30,6 +30,12 @@ def tell_origin(rig_file: Path | None, command: Sequence[str]) -> dict[str, Any]
     return origin
 
 
+def name_recording(path: Path) -> str:
+    """Name a recording by its file or folder; one that is called frames by what it belongs to."""
+    above = path.parent.name
+    return above if path.name == "frames" and above not in ("", "..") else path.name
+
+
 def when_written(path: Path) -> str | None:
     """Tell when a recording's file, or the last one of its folder, was written; None if unknown."""
     try:

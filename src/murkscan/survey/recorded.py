@@ -10,6 +10,7 @@ from ..project import Project
 from ..report import Recorded
 from ..types.background import Attenuation
 from ..types.frame_times import FrameTimes
+from .origin import name_recording
 
 _SINCE = 1e8
 """A log's time above this counts seconds since 1970; below it, a clock of its own [s]."""
@@ -25,7 +26,7 @@ def tell_recording(project: Project, scan: dict[str, Any]) -> Recorded:
     recording, counts = scan["recording"], project.finished("extract").counts()
     motion = project.finished("motion").key["settings"]["motion"]
     return Recorded(
-        name=Path(recording["path"]).name,
+        name=name_recording(Path(recording["path"])),
         size=tuple(recording["size"]),
         fields_per_picture=recording["fields_per_picture"],
         is_timed=recording["is_timed"],

@@ -13,6 +13,7 @@ from ..types.cloud import PointCloud
 from ..view import Layer, Model, choose_fairly, model_of_scan
 from .measured import measure_file
 from .merged import is_merged, load_moments, load_way
+from .origin import name_recording
 from .shift_field import trace_shift_field
 
 DEVIATION = "deviation"
@@ -67,7 +68,8 @@ def has_surface(project: Project) -> bool:
 
 def title_of(project: Project) -> str:
     """Name a scan by its recording, and a merged cloud by its folder."""
-    return Path(project.load_scan()["recording"].get("path", project.root.resolve())).name
+    path = project.load_scan()["recording"].get("path")
+    return project.root.resolve().name if path is None else name_recording(Path(path))
 
 
 def deviation_digest(project: Project, name: str) -> str | None:
