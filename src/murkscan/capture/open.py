@@ -127,7 +127,9 @@ def _folder_runs(
     path: Path, files: Sequence[str], wavelength: float, count: int
 ) -> Iterable[list[Image]]:
     """Read runs of pictures that follow one another, those of a run all of one size."""
-    for start in spread_evenly(max(len(files) - _RUN + 1, 1), count):
+    # Runs that share pictures would only seem to agree.
+    apart = min(count, max(len(files) // _RUN, 1))
+    for start in spread_evenly(max(len(files) - _RUN + 1, 1), apart):
         run: list[Image] = []
         for name in files[start : start + _RUN]:
             try:
