@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from murkscan.errors import InputError, NotEnoughData
-from murkscan.geometry.closest import find_closest, open_sides
 from murkscan.measure import (
     Sample,
     deviation_from_mesh,
@@ -117,27 +116,6 @@ def test_a_dent_wider_than_the_scan_is_refused(dented_scan):
         find_dents(dented_scan, references(dented_scan)["mesh"], smallest=1.0)
     with pytest.raises(InputError, match="wider than 0"):
         find_dents(dented_scan, references(dented_scan)["mesh"], smallest=0.0)
-
-
-def test_the_nearest_place_is_that_of_every_triangle_tried():
-    random = np.random.default_rng(0)
-    faces = np.stack([random.permutation(30)[:3] for _ in range(20)])
-    mesh = Mesh(random.normal(size=(30, 3)), faces)
-    points = random.normal(size=(50, 3))
-    found = find_closest(points, mesh, within=np.inf)
-    import trimesh
-
-    for point, distance in zip(points, found.distance, strict=True):
-        tried = trimesh.triangles.closest_point(
-            mesh.vertices[mesh.faces], np.repeat(point[None], len(mesh.faces), axis=0)
-        )
-        assert distance == pytest.approx(np.linalg.norm(tried - point, axis=1).min(), rel=1e-9)
-
-
-def test_a_closed_surface_has_no_open_side():
-    box = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
-    assert not open_sides(box).any()
-    assert open_sides(box[:3]).sum() == 3
 
 
 def test_a_histogram_is_a_picture(dented_scan):
