@@ -23,6 +23,8 @@ _NORMALS = {"nor:normalX": "nx", "nor:normalY": "ny", "nor:normalZ": "nz"}
 _INVALID = ("cartesianInvalidState", "sphericalInvalidState")
 _NORMALS_URI = "http://www.libe57.org/E57_NOR_surface_normals.txt"
 _OURS_URI = "urn:murkscan:point-columns:1"
+_SMALL = 10_000
+"""Points for which there is room at least: a file may hold thousands of small scans."""
 _OURS = "murk:"
 """Prefix of our own columns; `signal` is E57's intensity."""
 _FIELDS = {
@@ -163,7 +165,8 @@ def _read_scan(lib: Any, file: Any, number: int, path: Path, block: int) -> Iter
     wanted = {name: ours for name, ours in known.items() if ours is not None}
     wanted |= {name: name for name in place}
     wanted |= {name: name for name in _INVALID if name in there}
-    arrays = {name: np.zeros(block, _buffer_type(ours)) for name, ours in wanted.items()}
+    room = min(block, max(header.point_count, _SMALL))
+    arrays = {name: np.zeros(room, _buffer_type(ours)) for name, ours in wanted.items()}
     reader = header.points.reader(_named_buffers(lib, file.image_file, arrays))
     total = 0
     while count := reader.read():
