@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from murkscan.errors import Degenerate, InputError, MissingResult
+from murkscan.errors import Degenerate, FormatError, InputError, MissingResult
 from murkscan.io.deviation_files import save_deviation_ply
 from murkscan.io.json_files import save_json
 from murkscan.mesh import GridMesh
@@ -80,6 +80,16 @@ def test_a_merged_cloud_gets_pictures_and_a_page(tmp_path):
     assert content["title"] == "both"
     assert content["pictures"] == "pictures.html"
     assert (project.root / "view" / content["pictures"]).exists()
+
+
+def test_a_damaged_surface_costs_no_page_of_before(tmp_path):
+    project, _ = merged(tmp_path / "both", LINE)
+    draw_views(project)
+    before = (project.root / "view/index.html").read_bytes()
+    (project.root / "cloud/cloud.ply").write_bytes(b"ply\n")
+    with pytest.raises(FormatError):
+        draw_views(project, most=7)
+    assert (project.root / "view/index.html").read_bytes() == before
 
 
 def test_a_measured_deviation_becomes_a_layer_and_a_new_one_replaces_it(tmp_path):

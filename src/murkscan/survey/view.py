@@ -6,11 +6,12 @@ from typing import Any
 from ..errors import InputError
 from ..page import Gallery, Note, Picture, Section, render_page
 from ..project import Project
+from ..types.mesh import Mesh
 from ..view import MOST, PICTURES, draw_pictures, render_viewer
 from .compared import Compared, compare_models
 from .merged import load_way
 from .progress import Progress, silent
-from .shown import DEVIATION, deviation_digest, load_model, title_of
+from .shown import DEVIATION, deviation_digest, has_surface, load_model, title_of
 
 
 def draw_views(
@@ -56,11 +57,13 @@ def draw_views(
     if (result := stage.result()) is not None:
         return result
     since = time.monotonic()
+    # Pictures and page of before stay until all that the new ones need has been read.
+    surface = project.load_mesh() if has_surface(project) else None
+    shown = _load(project, other, align=align, deviation=deviation, most=most)
     stage.begin()
-    names = _draw(project, progress)
+    names = [] if surface is None else _draw(project, surface, progress)
     title = title_of(project)
     project.save_pictures_page(_pictures_page(title, names))
-    shown = _load(project, other, align=align, deviation=deviation, most=most)
     project.save_view_page(_page(title, shown))
     result = {
         "pictures": names,
@@ -90,14 +93,13 @@ def _page(title: str, shown: Compared) -> str:
     )
 
 
-def _draw(project: Project, progress: Progress) -> list[str]:
+def _draw(project: Project, surface: Mesh, progress: Progress) -> list[str]:
     names: list[str] = []
-    if project.finished("mesh").counts()["faces"]:
-        progress("view", 0, len(PICTURES))
-        for name, picture in draw_pictures(project.load_mesh(), load_way(project)):
-            project.save_picture(name, picture)
-            names.append(name)
-            progress("view", len(names), len(PICTURES))
+    progress("view", 0, len(PICTURES))
+    for name, picture in draw_pictures(surface, load_way(project)):
+        project.save_picture(name, picture)
+        names.append(name)
+        progress("view", len(names), len(PICTURES))
     return names
 
 
