@@ -171,7 +171,9 @@ def test_a_folder_that_no_simulation_has_made_stays_as_it_is(tmp_path, name):
 
 
 def test_a_simulation_that_was_stopped_is_made_anew_in_its_folder(tmp_path):
+    """Also where the demo has begun it with a note of its own."""
     scene, _ = _scene([("frames = 6", "frames = 2")])
+    (tmp_path / "stage.json").write_text("{}")
 
     def stop(*_):
         raise KeyboardInterrupt
