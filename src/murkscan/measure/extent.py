@@ -15,7 +15,14 @@ from ..types.quantity import Quantity
 from .height_errors import find_height_errors
 from .sample import Sample
 from .selection import Selection
-from .surface import area_vectors, nearest_points, rig_modes, rim_lengths, usual_noise
+from .surface import (
+    area_vectors,
+    nearest_points,
+    require_one_sheet,
+    rig_modes,
+    rim_lengths,
+    usual_noise,
+)
 from .trust import Trust
 
 _TILT = 0.05
@@ -58,7 +65,11 @@ def measure_area(mesh: Mesh, sample: Sample) -> Measurement:
     Args:
         mesh: The surface.
         sample: The points it was made of.
+
+    Raises:
+        InputError: Sheets of it lie on one another.
     """
+    require_one_sheet(mesh)
     vectors = area_vectors(mesh)
     number = nearest_points(sample, mesh.vertices)
     normals = sample.cloud.normals[number].astype(float)[mesh.faces].sum(axis=1)
@@ -94,7 +105,9 @@ def measure_volume(
 
     Raises:
         NotEnoughData: The surface stands upright on the plane.
+        InputError: Sheets of it lie on one another.
     """
+    require_one_sheet(mesh)
     heights = plane.distance_to(mesh.vertices)
     shadows = area_vectors(mesh) @ plane.normal
     shadows = shadows if shadows.sum() >= 0 else -shadows

@@ -1,6 +1,7 @@
 """What every mesher can do."""
 
 import abc
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -32,6 +33,17 @@ class AbstractMesher(abc.ABC):
         Raises:
             InputError: A point is not finite.
         """
+
+    def mesh_passes(self, passes: Sequence[PointCloud]) -> Mesh:
+        """Make one surface of several passes over an object, in one frame.
+
+        Args:
+            passes: The points of each, as for `mesh`.
+
+        Raises:
+            InputError: A point is not finite.
+        """
+        return self.mesh(PointCloud.concatenate(passes))
 
 
 def empty_mesh() -> Mesh:

@@ -1,5 +1,6 @@
 """Triangles between neighbouring profiles: the surface exactly as it was scanned."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import final
 
@@ -11,6 +12,7 @@ from ..types.arrays import Faces, Indices
 from ..types.cloud import PointCloud
 from ..types.mesh import Mesh
 from .base import AbstractMesher, drop_unused_vertices, empty_mesh
+from .one_sheet import join_sheets
 from .smooth import smooth_points
 
 
@@ -63,6 +65,14 @@ class GridMesh(AbstractMesher):
         faces = np.concatenate([_full_cells(grid, along, across), _corners(along, across)])
         vertices = smooth_points(grid, along, across, most=self.smoothing)
         return drop_unused_vertices(Mesh(vertices, _face_camera(grid, faces)))
+
+    def mesh_passes(self, passes: Sequence[PointCloud]) -> Mesh:
+        """Make a sheet a pass; where sheets lie on one another, that of the first pass stays.
+
+        Raises:
+            InputError: The points do not say to which profile and scan line they belong.
+        """
+        return join_sheets([self.mesh(one) for one in passes])
 
 
 def _full_cells(grid: ScanGrid, along: Indices, across: Indices) -> Faces:

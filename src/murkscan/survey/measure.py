@@ -111,7 +111,7 @@ def measure_covered(
     Raises:
         MissingResult: The mesh stage has not been finished.
         NotEnoughData: The selection holds no triangle.
-        InputError: The name is none for a file.
+        InputError: The name is none for a file, or sheets of the surface lie on one another.
     """
     measure_file(project, name)
     mesh = cut_out(project.load_mesh(), selection)
@@ -139,7 +139,7 @@ def measure_above(
     Raises:
         MissingResult: The mesh stage has not been finished.
         EstimationError: A part is too small, or the base is no plane.
-        InputError: The name is none for a file.
+        InputError: The name is none for a file, or sheets of the surface lie on one another.
     """
     measure_file(project, name)
     sample = load_sample(project)

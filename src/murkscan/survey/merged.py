@@ -6,6 +6,7 @@ import numpy as np
 
 from ..errors import FormatError, InputError, MissingResult
 from ..project import Project
+from ..types.cloud import PointCloud
 from ..types.frame_times import FrameTimes
 from ..types.trajectory import Trajectory
 
@@ -54,3 +55,16 @@ def load_moments(project: Project) -> FrameTimes | None:
         return project.load_frame_times()
     way = load_way(project)
     return None if way is None else FrameTimes(way.times.astype(np.uint32), way.times)
+
+
+def split_passes(project: Project, cloud: PointCloud) -> list[PointCloud]:
+    """Give the points of each pass of a merged cloud, those without any left out; else all.
+
+    Raises:
+        MissingResult: The cloud stage has not been finished.
+    """
+    if not is_merged(project):
+        return [cloud]
+    ranges = [one["frames"] for one in project.finished("cloud").counts()["passes"]]
+    parts = [cloud[(cloud.frame >= low) & (cloud.frame <= high)] for low, high in ranges]
+    return [part for part in parts if len(part)]

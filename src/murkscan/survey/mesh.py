@@ -14,7 +14,7 @@ from ..project import Project
 from ..types.cloud import PointCloud
 from ..types.mesh import Mesh
 from .export import require_outside_stages
-from .merged import load_way
+from .merged import load_way, split_passes
 from .progress import Progress, silent
 from .settings import describe
 
@@ -68,7 +68,7 @@ def build_mesh(
     progress("mesh", 0, None)
     cloud = project.load_cloud()
     finish = replace(finish, paint=_towards(finish.paint, project))
-    mesh, holes = _finish(mesher.mesh(cloud), cloud, finish)
+    mesh, holes = _finish(mesher.mesh_passes(split_passes(project, cloud)), cloud, finish)
     stage.begin()
     if len(mesh.faces):
         project.save_mesh(mesh)
