@@ -193,6 +193,7 @@ HOSTILE = {
     "far.obj": b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 999999999999\n",
     "before.obj": b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf -1 -2 -99999999\n",
     "nan.obj": b"v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+    "flat.obj": b"v 0 0\nv 1 0\nv 0 1\nf 1 2 3\n",
     "text.obj": b"v a b c\nf 1 2 3\n",
 }  # fmt: skip
 READ = """

@@ -64,7 +64,8 @@ def load_mesh(path: Path) -> Mesh:
     # Which error a damaged file ends in is up to trimesh's readers: any.
     except Exception as error:
         raise FormatError(f"{path} is not {_NAMES[kind]} file that can be read.") from error
-    if len(faces) == 0 or not np.isfinite(vertices).all() or not _is_inside(faces, len(vertices)):
+    is_placed = vertices.shape[1:] == (3,) and np.isfinite(vertices).all()
+    if len(faces) == 0 or not is_placed or not _is_inside(faces, len(vertices)):
         raise FormatError(f"{path} has no triangles, or some without a place; it is damaged.")
     vertices = vertices * _GLB_FROM_OURS if kind == "glb" else vertices
     return Mesh(vertices, faces, filled, colours)
