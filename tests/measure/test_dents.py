@@ -1,5 +1,7 @@
 """Dents and deviations on surfaces whose truth is written down."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ from murkscan.measure import (
     draw_histogram,
     find_dents,
     measure_departure,
+    require_dent_sizes,
 )
 from murkscan.types.mesh import Mesh
 
@@ -114,7 +117,7 @@ def test_the_departure_of_a_shifted_scan_is_the_shift():
 def test_a_dent_wider_than_the_scan_is_refused(dented_scan):
     with pytest.raises(NotEnoughData, match="smaller"):
         find_dents(dented_scan, references(dented_scan)["mesh"], smallest=1.0)
-    with pytest.raises(InputError, match="wider than 0"):
+    with pytest.raises(InputError, match="smallest"):
         find_dents(dented_scan, references(dented_scan)["mesh"], smallest=0.0)
 
 
@@ -122,3 +125,55 @@ def test_a_histogram_is_a_picture(dented_scan):
     picture = draw_histogram(references(dented_scan)["mesh"].values, title="dent")
     assert picture.shape == (800, 1280, 3)
     assert picture.std() > 10
+
+
+def test_a_dent_that_the_scan_cuts_through_is_counted_and_not_told():
+    # The scan ends 1 mm beside the dent's middle: a polynomial would have to guess one side.
+    whole = scans.scan_cloud(dented, noise=1e-4, spacing=2e-3)
+    part = Sample.from_cloud(whole[whole.points[:, 0] < 0.011])
+    deviation = deviation_from_mesh(part, grid_mesh(bowl), within=0.01)
+    search = find_dents(part, deviation, smallest=0.015)
+    assert search.dents == ()
+    assert search.num_unsure == 1
+
+
+def test_what_is_told_of_an_intact_surface_is_beyond_its_own_interval():
+    for seed in range(4):
+        random = np.random.default_rng(seed)
+        cloud = scans.scan_cloud(bowl, noise=1e-4, spacing=2e-3)
+        # Errors in common of 8 mm patches, as stripes have them, and a rim full of bays.
+        cells = np.floor(cloud.points[:, :2] / 0.008).astype(int) + 20
+        off = 1e-4 * random.standard_normal((60, 60))[cells[:, 0], cells[:, 1]]
+        gone = random.random((60, 60))[cells[:, 0], cells[:, 1]] < 0.2
+        cloud = replace(cloud, points=cloud.points + off[:, None] * [0.0, 0.0, 1.0])[~gone]
+        sample = Sample.from_cloud(cloud)
+        deviation = deviation_from_mesh(sample, grid_mesh(bowl), within=0.01)
+        for dent in find_dents(sample, deviation, smallest=0.015).dents:
+            low, high = dent.depth.interval
+            assert low > 0 or high < 0
+            assert abs(dent.depth.value) < 5e-4
+
+
+@pytest.mark.parametrize("largest", [np.nan, 0.0, -5.0, np.inf, 1e-12])
+def test_sizes_that_no_dent_has_are_refused(dented_scan, largest):
+    with pytest.raises(InputError, match="largest"):
+        require_dent_sizes(smallest=0.01, largest=largest)
+    with pytest.raises(InputError, match=r"largest-mm|larger things"):
+        deviation_from_smooth(dented_scan, largest=largest)
+
+
+@pytest.mark.parametrize("length", [np.nan, 0.0, -5.0, np.inf])
+def test_a_reach_that_is_none_is_refused(dented_scan, length):
+    with pytest.raises(InputError, match="reach"):
+        deviation_from_mesh(dented_scan, grid_mesh(bowl), within=length)
+    with pytest.raises(InputError, match="smallest"):
+        find_dents(dented_scan, references(dented_scan)["mesh"], smallest=length)
+    if length != 0:
+        with pytest.raises(InputError, match="least-depth"):
+            require_dent_sizes(smallest=0.01, least_depth=length)
+
+
+@pytest.mark.parametrize("smallest", [1e-12, 1e-300, 5e-324])
+def test_a_map_without_end_is_refused(dented_scan, smallest):
+    with pytest.raises(InputError, match="too large"):
+        find_dents(dented_scan, references(dented_scan)["mesh"], smallest=smallest)

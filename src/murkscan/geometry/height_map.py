@@ -51,13 +51,17 @@ class MapFrame:
         axes = np.concatenate([span_plane(up / length), (up / length)[None]])
         along = points @ axes.T
         low = along.min(axis=0)
-        columns, rows = (np.ptp(along[:, :2], axis=0) // cell).astype(int) + 1
-        if columns * rows > _MOST_CELLS:
+        with np.errstate(over="ignore", divide="ignore"):
+            columns, rows = (np.ptp(along[:, :2], axis=0) / cell).tolist()
+        # Beyond this the numbers have no whole parts that fit.
+        if not (columns + 1) * (rows + 1) <= _MOST_CELLS:
             raise InputError(
-                f"A map of {columns} × {rows} cells of {cell * 1e3:g} mm is too large; measure a "
-                "part of the scan, or look for larger things."
+                f"A map of {columns:.3g} × {rows:.3g} cells of {cell * 1e3:g} mm is too large; "
+                "measure a part of the scan, or look for larger things."
             )
-        return cls(np.array([low[0], low[1], 0.0]) @ axes, axes, cell, (int(rows), int(columns)))
+        return cls(
+            np.array([low[0], low[1], 0.0]) @ axes, axes, cell, (int(rows) + 1, int(columns) + 1)
+        )
 
     def locate(self, points: Points) -> Points:
         """Give points of the world as places along columns and rows, and heights [m]."""

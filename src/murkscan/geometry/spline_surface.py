@@ -9,7 +9,7 @@ from scipy import sparse
 from scipy.interpolate import BSpline
 from scipy.sparse.linalg import spsolve
 
-from ..errors import NotEnoughData
+from ..errors import InputError, NotEnoughData
 from ..types.arrays import Scalars
 
 _DEGREE = 3
@@ -23,6 +23,8 @@ _STIFFNESS = 1e-7
 """Weight of the surface's bending against its heights: it only holds where there are none."""
 _STEP = 1e-4
 """Shift of a place for the surface's slope there [m]."""
+_MOST_COEFFICIENTS = 12_000
+"""Coefficients whose covariance still fits into the memory of ordinary machines: 1.2 GB."""
 _SETTLED = 1e-7
 """Change of the surface after which it is done [m]."""
 
@@ -76,11 +78,19 @@ def fit_spline_surface(
 
     Raises:
         NotEnoughData: There are fewer heights than the surface has coefficients.
+        InputError: The spacing is so small that there are too many.
 
     References:
         Beaton and Tukey, The fitting of power series, Technometrics 16(2), 1974 (the weights).
         Eilers and Marx, Flexible smoothing with B-splines and penalties, Stat. Sci. 11(2), 1996.
     """
+    count = math.prod(side / spacing + _DEGREE for side in extent)
+    if count > _MOST_COEFFICIENTS:
+        raise InputError(
+            f"A surface smooth over {spacing * 1e3:g} mm has {count:.3g} coefficients here, "
+            f"more than {_MOST_COEFFICIENTS:,}; measure a part of the scan, or look for larger "
+            "things."
+        )
     knots = (_lay_knots(extent[0], spacing), _lay_knots(extent[1], spacing))
     design = _design(places, knots)
     if len(places) <= design.shape[1]:

@@ -16,6 +16,7 @@ from .fits import measure_plane as measure_plane
 from .fits import measure_sphere as measure_sphere
 from .fits import trust_plane as trust_plane
 from .histogram import draw_histogram as draw_histogram
+from .lengths import require_dent_sizes as require_dent_sizes
 from .sample import Sample as Sample
 from .section import cut_section as cut_section
 from .section import measure_section as measure_section

@@ -29,6 +29,11 @@ _FEWEST_PLACES = 10
 """Places below which they tell nothing: of three that do not overlap."""
 _LEAST_SHARE = 0.7
 """Share of the floor's points below which a place lies at a rim or in a gap."""
+_SECTORS = 8
+"""Parts of the ring around a floor, each of which must have points: beyond the last point a
+polynomial tells nothing."""
+_TWICE = 2
+"""Points that each coefficient of a polynomial needs."""
 
 Place = Float[np.ndarray, "2"]
 Numbers = Int[np.ndarray, " some"]
@@ -84,6 +89,14 @@ class _Floor:
     design: Float[np.ndarray, "n p"]
     coefficients: Float[np.ndarray, " p"]
 
+    def is_surrounded(self, scan: SearchedScan) -> bool:
+        """Tell whether points lie all around its middle, and enough of them."""
+        off = scan.located[self.inside, :2] - self.place
+        ring = off[np.linalg.norm(off, axis=1) > self.reach / 2]
+        sectors = np.floor(np.arctan2(ring[:, 1], ring[:, 0]) / (2 * math.pi) * _SECTORS) % _SECTORS
+        enough = len(self.inside) >= _TWICE * len(self.coefficients)
+        return enough and len(np.unique(sectors)) == _SECTORS
+
     @classmethod
     def through(
         cls, scan: SearchedScan, place: Place, reach: float, *, order: int, clear: float = 0.0
@@ -105,8 +118,10 @@ class _Floor:
 
 def measure_depth(
     scan: SearchedScan, start: Place, radius: float, *, common: float | None
-) -> Quantity:
+) -> Quantity | None:
     """Give the depth of a dent, by a polynomial of fourth order through its floor.
+
+    None where that is not surrounded by points, as at a rim.
 
     Beside rig and reference three things err. The points: how far, the residuals tell, and what the
     same polynomial gives at intact places, where it should give nothing; an error that the
@@ -130,6 +145,8 @@ def measure_depth(
     narrow = _Floor.through(scan, start, max(_NARROW * radius, 2 * cell), order=2)
     wide = _Floor.through(scan, start, max(_WIDE * radius, 3 * cell), order=4)
     deepest = start + narrow.reach * np.array(_turning_point(narrow.coefficients))
+    if not (narrow.is_surrounded(scan) and wide.is_surrounded(scan)):
+        return None
     own, degrees = _own_part(scan, wide, deepest)
     bounds = (
         wide.value_at(deepest) - narrow.value_at(deepest),

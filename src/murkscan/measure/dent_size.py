@@ -20,6 +20,9 @@ _FLOOR = 0.8
 """Share of its greatest depth down to which a dent has its floor."""
 _RIM = 3
 """Cells around a dent that are its rim."""
+_MOST_OFF = 3.0
+"""Ratio of a dent's depth and the averaged map's, beyond which one of them is wrong: averaging
+takes a third off the smallest dents."""
 _MOST_AT_RIM = 200
 """Points of the rim for which the rig's errors are traced."""
 
@@ -47,8 +50,8 @@ class DentRegion:
         return self.frame.cell * math.sqrt(self.cells.sum() / math.pi)
 
 
-def measure_dent(region: DentRegion, scan: SearchedScan, values: Map) -> Dent:
-    """Measure one dent.
+def measure_dent(region: DentRegion, scan: SearchedScan, values: Map) -> Dent | None:
+    """Measure one dent; None where its depth cannot be told from none.
 
     Its depth is that of a polynomial fitted to the points around its deepest place; its middle is
     the centre of gravity of what is missing; its rim lies where the averaged map is at a tenth of
@@ -67,6 +70,8 @@ def measure_dent(region: DentRegion, scan: SearchedScan, values: Map) -> Dent:
     common, moved = _common_part(region, sample, located)
     area = float(region.cells.sum()) * region.frame.cell**2
     depth = measure_depth(scan, _floor_middle(region, values), region.radius, common=common)
+    if depth is None or not _is_sound(depth, -float(values[region.deepest])):
+        return None
     height = _height_at(located[inside], middle)
     axes = region.frame.map_from_world
     along = np.array([spread[0], spread[1], depth.sigma_independent])
@@ -85,6 +90,12 @@ def measure_dent(region: DentRegion, scan: SearchedScan, values: Map) -> Dent:
         ),
         num_points=int(inside.sum()),
     )
+
+
+def _is_sound(depth: Quantity, on_map: float) -> bool:
+    """Tell whether a depth is none by no chance, and what the averaged map shows there."""
+    low, high = depth.interval
+    return (low > 0 or high < 0) and 1 / _MOST_OFF < depth.value / on_map < _MOST_OFF
 
 
 def _floor_middle(region: DentRegion, values: Map) -> np.ndarray:

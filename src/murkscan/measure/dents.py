@@ -7,13 +7,14 @@ import numpy as np
 from scipy.ndimage import label
 from scipy.special import ndtri
 
-from ..errors import InputError, NotEnoughData
+from ..errors import NotEnoughData
 from ..geometry.height_map import Map, MapFrame, smooth_map
 from ..types.arrays import Mask, Points, Scalars
 from ..types.dent import Dent
 from ..types.deviation import Deviation
 from .dent_depth import SearchedScan
 from .dent_size import DentRegion, measure_dent
+from .lengths import require_dent_sizes
 from .sample import Sample
 
 _CELLS = 8
@@ -51,6 +52,8 @@ class DentSearch:
     """Mean depth, over the map's smoothing, from which a place counts as a dent [m]."""
     noise: float
     """Standard deviation of the map [m]."""
+    num_unsure: int = 0
+    """Places beyond the threshold whose depth is not told: at a rim, or by no more than chance."""
 
 
 def find_dents(
@@ -68,14 +71,10 @@ def find_dents(
         least_depth: Depth below which none is told [m].
 
     Raises:
-        InputError: A size is not positive, or so small that the map is too large.
+        InputError: A size is none, or so small that the map is too large.
         NotEnoughData: The scan is smaller than the smallest dent.
     """
-    if not (smallest > 0 and least_depth >= 0):
-        raise InputError(
-            f"The smallest dent must be wider than 0 and its depth not below, got "
-            f"{smallest * 1e3:g} and {least_depth * 1e3:g} mm."
-        )
+    require_dent_sizes(smallest=smallest, least_depth=least_depth)
     known = np.isfinite(deviation.values)
     sample, deviation = sample[known], deviation[known]
     frame = MapFrame.over(sample.cloud.points, deviation.normals, smallest / _CELLS)
@@ -98,9 +97,10 @@ def find_dents(
     none = np.zeros(frame.shape, bool)
     is_dented = np.any([none, *(region.cells for region in regions)], axis=0)
     scan = SearchedScan.of(frame, sample, deviation, located, is_dented)
-    dents = [measure_dent(region, scan, values) for region in regions]
+    measured = (measure_dent(region, scan, values) for region in regions)
+    dents = [dent for dent in measured if dent is not None]
     dents.sort(key=lambda dent: -abs(dent.depth.value))
-    return DentSearch(tuple(dents), threshold, noise)
+    return DentSearch(tuple(dents), threshold, noise, len(regions) - len(dents))
 
 
 def _average(frame: MapFrame, located: Points, values: Scalars) -> tuple[Map, Mask]:

@@ -13,6 +13,7 @@ from ..geometry.spline_surface import SplineSurface, fit_spline_surface
 from ..types.arrays import Directions, Points, Scalars
 from ..types.deviation import Deviation
 from ..types.mesh import Mesh
+from .lengths import require_length
 from .sample import Sample
 
 _CELLS = 16
@@ -40,7 +41,9 @@ def deviation_from_mesh(
 
     Raises:
         NotEnoughData: No point lies within that distance of the reference.
+        InputError: That distance is none.
     """
+    require_length("reach", within)
     points = sample.cloud.points
     closest = find_closest(points, mesh, within=within)
     beside = (closest.face >= 0) & ~closest.is_at_rim
@@ -71,7 +74,9 @@ def deviation_from_smooth(sample: Sample, *, largest: float) -> Deviation:
 
     Raises:
         NotEnoughData: There are too few points.
+        InputError: The width is none.
     """
+    require_length("largest", largest)
     points = sample.cloud.points
     frame = MapFrame.over(points, sample.cloud.normals, largest / _CELLS)
     located = frame.locate(points)

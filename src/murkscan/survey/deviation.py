@@ -16,6 +16,7 @@ from ..measure import (
     draw_histogram,
     find_dents,
     measure_departure,
+    require_dent_sizes,
     sigma_of_points,
 )
 from ..project import Project
@@ -55,7 +56,7 @@ def compare_scan(
     Raises:
         MissingResult: The cloud or the mesh stage has not been finished.
         NotEnoughData: No point lies near the reference.
-        InputError: The name is none for a file.
+        InputError: The name is none for a file, or the distance is none.
     """
     measure_file(project, name)
     sample = load_sample(project, selection)
@@ -102,6 +103,7 @@ def search_dents(
         InputError: The name is none for a file, or a size is not one.
     """
     measure_file(project, name)
+    require_dent_sizes(smallest=smallest, largest=largest, least_depth=least_depth)
     sample = load_sample(project, selection)
     surface = cut_out(project.load_mesh(), selection)
     if reference is None:
@@ -113,7 +115,10 @@ def search_dents(
     search = find_dents(sample, deviation, smallest=smallest, least_depth=least_depth)
     _save_points(project, name, sample, deviation)
     _draw(project, name, surface, sample, deviation)
-    details: dict[str, object] = {"dents": [_as_plain(dent) for dent in search.dents]}
+    details: dict[str, object] = {
+        "dents": [_as_plain(dent) for dent in search.dents],
+        "unsure": search.num_unsure,
+    }
     if reference is not None:
         details |= _how_aligned(reference)
     threshold = Quantity("threshold", search.threshold, "m", search.noise, 0.0)
