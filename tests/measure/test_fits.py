@@ -10,7 +10,13 @@ from murkscan.errors import Degenerate, InputError, NotEnoughData
 from murkscan.geometry.correlated_errors import covariance_of_fit
 from murkscan.geometry.cylinder_fit import fit_cylinder
 from murkscan.geometry.sphere_fit import fit_sphere
-from murkscan.measure import Sample, measure_cylinder, measure_plane, measure_sphere
+from murkscan.measure import (
+    Sample,
+    measure_cylinder,
+    measure_plane,
+    measure_sphere,
+    measure_step,
+)
 
 from .. import scans
 
@@ -170,3 +176,21 @@ def test_points_of_other_programs_are_numbered_by_place_and_get_normals():
     assert found.value == pytest.approx(known.value)
     # Independent noise: both tell its effect to a part that depends on how they are numbered.
     assert 0.5 < found.half_width / known.half_width < 2
+
+
+@pytest.mark.parametrize("profiles", [1, 2])
+@pytest.mark.parametrize("measure", [measure_plane, measure_sphere, measure_cylinder])
+def test_the_laser_s_own_sheet_is_no_shape(measure, profiles):
+    whole = sample_of(scans.sphere, noise=1e-4)
+    middle = int(np.median(whole.profile))
+    part = whole[(whole.profile >= middle) & (whole.profile < middle + profiles)]
+    with pytest.raises(NotEnoughData, match=f"in {profiles} profile"):
+        measure(part)
+
+
+def test_a_step_to_a_single_profile_is_none():
+    whole = sample_of(scans.step, noise=1e-4)
+    y = whole.cloud.points[:, 1]
+    low, high = whole[y > 5e-3], whole[y < -5e-3]
+    with pytest.raises(NotEnoughData, match="1 profile,"):
+        measure_step(low, high[high.profile == int(np.median(high.profile))])

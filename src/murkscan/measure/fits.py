@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..errors import NotEnoughData
 from ..geometry.cylinder_fit import fit_cylinder
 from ..geometry.plane_fit import fit_plane
 from ..geometry.shape import AnyShape
@@ -16,6 +17,9 @@ from ..types.quantity import Quantity
 from .sample import Sample
 from .trust import LinearMap, Trust, trust_fit
 
+_FEWEST_PROFILES = 3
+"""Profiles below which a fit has nothing across the sheet of light to agree with."""
+
 
 def measure_plane(sample: Sample) -> Measurement:
     """Fit a plane: its unit normal, and the distance of the world's origin from it.
@@ -23,7 +27,7 @@ def measure_plane(sample: Sample) -> Measurement:
     The normal is turned to the camera.
 
     Raises:
-        NotEnoughData: Fewer than four points.
+        NotEnoughData: Fewer than four points, or three profiles.
         Degenerate: The points lie on one line.
     """
     fit, trust = trust_plane(sample)
@@ -40,11 +44,12 @@ def trust_plane(sample: Sample) -> tuple[ShapeFit[Plane], Trust]:
     """Fit a plane whose normal points to the camera, and find how far to trust it.
 
     Raises:
-        NotEnoughData: Fewer than four points.
+        NotEnoughData: Fewer than four points, or three profiles.
         Degenerate: The points lie on one line.
     """
     points = sample.cloud.points
     require_points(points, 4, "plane")
+    _require_profiles(sample, "plane")
     middle = points.mean(axis=0)
     start = fit_plane(points - middle).plane
     if np.sum(sample.cloud.normals @ start.normal) < 0:
@@ -57,10 +62,11 @@ def measure_sphere(sample: Sample) -> Measurement:
     """Fit a sphere: radius, diameter and centre.
 
     Raises:
-        NotEnoughData: Fewer than five points.
+        NotEnoughData: Fewer than five points, or three profiles.
         Degenerate: The points lie in a plane, or cover too little of the sphere.
         NotConverged: No sphere settles.
     """
+    _require_profiles(sample, "sphere")
     fit = fit_sphere(sample.cloud.points, sight=sample.sight)
     sphere = fit.shape
     values = {"radius": sphere.radius, "diameter": 2 * sphere.radius}
@@ -75,10 +81,11 @@ def measure_cylinder(sample: Sample) -> Measurement:
     """Fit a cylinder: radius, diameter, a point of its axis and the axis' direction.
 
     Raises:
-        NotEnoughData: Fewer than six points.
+        NotEnoughData: Fewer than six points, or three profiles.
         Degenerate: The points do not curve, or cover too little of the cylinder.
         NotConverged: No cylinder settles.
     """
+    _require_profiles(sample, "cylinder")
     normals = sample.cloud.normals.astype(float)
     fit = fit_cylinder(sample.cloud.points, normals, sight=sample.sight)
     cylinder, sides = fit.shape, span_plane(fit.shape.axis)
@@ -90,6 +97,17 @@ def measure_cylinder(sample: Sample) -> Measurement:
     how[2:5, :2] = how[5:, 2:4] = sides.T
     units = ("m",) * 5 + ("",) * 3
     return _tell("cylinder", fit, trust_fit(fit, sample), values, units, how)
+
+
+def _require_profiles(sample: Sample, what: str) -> None:
+    """Refuse points that all lie in the laser's sheet, through which any shape fits too well."""
+    count = len(np.unique(sample.profile))
+    if count < _FEWEST_PROFILES:
+        raise NotEnoughData(
+            f"The {len(sample)} points lie in {count} profile{'s' if count > 1 else ''}, which "
+            f"show the laser's sheet rather than a {what}; choose a part of the scan with "
+            f"{_FEWEST_PROFILES} profiles or more."
+        )
 
 
 def _tell(
