@@ -118,12 +118,12 @@ def test_a_step_in_depth_stays_where_it_is():
 
 @pytest.mark.parametrize("peak", [12.0, 60.0, 180.0])
 def test_sigma_holds_two_thirds_of_the_errors_on_a_rough_surface(peak):
-    """Surfaces are taken to be rough by 0.06 px from scan line to scan line; this one is so.
+    """Surfaces are taken to be rough by 0.04 px from scan line to scan line; this one is so.
 
-    Its steps of 0.05 px a line put each line 0.06 px off the line between its neighbours'. Chance
+    Its steps of 0.033 px a line put each line 0.04 px off the line between its neighbours'. Chance
     moves 4800 errors by 1 point, their kinship with neighbours by 3, the guess of a law by more.
     """
-    steps = 0.05 * np.random.default_rng(3).standard_normal(LENGTH)
+    steps = 0.033 * np.random.default_rng(3).standard_normal(LENGTH)
     centres = [_hull(i) + np.cumsum(steps) for i in range(20)]
     within = [
         np.abs(s.pixels[:, 1] - centre[s.pixels[:, 0].astype(int)]) < s.sigma
@@ -134,6 +134,19 @@ def test_sigma_holds_two_thirds_of_the_errors_on_a_rough_surface(peak):
         )
     ]
     assert np.concatenate(within).mean() == pytest.approx(0.683, abs=0.05)
+
+
+def test_the_bend_of_a_ball_is_not_taken_for_scatter():
+    """A stripe that bends as over a ball of 40 mm at 0.8 m, by 0.0056 px a line², scatters no more.
+
+    Its second differences over three lines are 0.1 px, eight times what the noise of a peak of 180
+    explains; that noise is known to a tenth or so, and rounding adds to it.
+    """
+    ball = 60.0 + 0.0056 * (LINES - LENGTH / 2) ** 2
+    film = _film([8.0 + _light(ball + 0.3 * i, 180.0) for i in range(12)])
+    shape = Murk().learn(film, RIG).stripe
+    assert shape is not None
+    assert shape.floor < 0.01
 
 
 def test_a_chunk_gives_what_the_whole_would():

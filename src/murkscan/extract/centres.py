@@ -21,7 +21,7 @@ _WIDTH_SPREAD, _SKIRT_SPREAD = 0.15, 0.1
 """Spreads of the priors on a stripe's width (of its logarithm) and on its skirt's share."""
 _REACH = 8.0
 """Scan lines over which centres are joined."""
-_ROUGH = 0.06
+_ROUGH = 0.04
 """Roughness of a surface from scan line to scan line, as far as nothing shows more [px]."""
 _INNER, _APART = 3, 4.0
 """Scan lines from a stripe's end to where it is as bright as it is, and pixels a line that part."""

@@ -31,7 +31,11 @@ _WIDEST, _WANTED = 2.2, 1.1
 _SURE = 0.9
 """Posterior from which a ridge is learnt from."""
 _APART = 3
-"""Scan lines between centres whose second difference is taken: nearer ones share their noise."""
+"""Scan lines between centres that are compared: nearer ones share their noise."""
+_THIRD = np.array([-1.0, 3.0, -3.0, 1.0])
+"""Third difference of four centres: the slope and the bend of a smooth surface are none of it."""
+_JUMP = 1.3
+"""The same, scaled to the scatter of one centre, from which a surface jumps [px]."""
 _ONE_SIGMA = 0.6827
 """Share of a Gaussian's values within one standard deviation."""
 _ENOUGH = 100
@@ -153,7 +157,7 @@ class _Fits:
     skirt: Scalars
     trust: Scalars
     bends: Float[np.ndarray, "m 2"]
-    """Second differences of centres: the standard deviation of each that noise explains, and it."""
+    """Third differences of centres: the standard deviation of each that noise explains, and it."""
 
     def __len__(self) -> int:
         """Count the ridges."""
@@ -164,7 +168,7 @@ class _Fits:
         """Take what fits; a score above 50 is trusted no more than 50."""
         fits = np.isfinite(found[:, 0])
         clear = fits & (height > 6.0)
-        bends = _second_differences(lines[clear], found[clear, 0], found[clear, 1])
+        bends = _third_differences(lines[clear], found[clear, 0], found[clear, 1])
         trust = np.minimum(height[fits], 50.0) ** 2
         return cls(found[fits, 3], found[fits, 4], trust, bends)
 
@@ -194,18 +198,19 @@ def _half_crossing(side: Float[np.ndarray, "n reach"]) -> Scalars:
     return np.where(first > 0, crossing, np.nan)
 
 
-def _second_differences(
+def _third_differences(
     lines: Indices, centres: Scalars, sigma: Scalars
 ) -> Float[np.ndarray, "m 2"]:
-    """Give how far centres should be off the mean of two others, and are, both scaled to one."""
-    before, after = np.searchsorted(lines, lines - _APART), np.searchsorted(lines, lines + _APART)
-    after = np.minimum(after, len(lines) - 1)
-    both = (lines[before] == lines - _APART) & (lines[after] == lines + _APART)
-    middle, before, after = np.flatnonzero(both), before[both], after[both]
-    bend = centres[middle] - 0.5 * (centres[before] + centres[after])
-    expected = np.sqrt(sigma[middle] ** 2 + 0.25 * (sigma[before] ** 2 + sigma[after] ** 2))
-    smooth = np.abs(bend) < 3.0
-    return np.stack([expected, bend], axis=1)[smooth] / np.sqrt(1.5)
+    """Give how far centres should be off a parabola through others, and are, scaled to one centre.
+
+    Second differences would take the bend of a ball, which often is the surest, for scatter.
+    """
+    wanted = lines[:, None] + _APART * np.arange(len(_THIRD))
+    four = np.minimum(np.searchsorted(lines, wanted), len(lines) - 1)
+    four = four[(lines[four] == wanted).all(axis=1)]
+    expected, off = np.sqrt(sigma[four] ** 2 @ _THIRD**2), centres[four] @ _THIRD
+    scaled = np.stack([expected, off], axis=1) / np.linalg.norm(_THIRD)
+    return scaled[np.abs(scaled[:, 1]) < _JUMP]
 
 
 def _explain(bends: Float[np.ndarray, "m 2"]) -> tuple[float, float]:
