@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from murkscan.errors import InputError, MissingDependency
+from murkscan.errors import Degenerate, InputError, MissingDependency
 from murkscan.mesh import GridMesh, Poisson
 
 from ..scans import cylinder, holed, plane, scan_cloud, sphere, step
@@ -177,6 +177,25 @@ def test_the_depth_that_poisson_takes_is_no_worse_than_the_points():
     away = np.linalg.norm(mesh.vertices - np.array([0.0, 0.0, 0.5]), axis=1)
     inner = np.hypot(*mesh.vertices[:, :2].T) < 0.03
     assert np.sqrt(np.mean((away[inner] - 0.05) ** 2)) < 1e-4
+
+
+@WITH_OPEN3D
+@pytest.mark.parametrize("with_normals", [True, False])
+def test_poisson_makes_no_surface_of_a_line(with_normals):
+    cloud = unnumbered(scan_cloud(plane), with_normals=with_normals)
+    share = np.linspace(0, 1, len(cloud))[:, None]
+    # Coordinates in single precision, as many files have them, leave the line by 1e-7 of it.
+    on_line = (share * [1.0, 2.0, 0.3]).astype(np.float32).astype(float)
+    with pytest.raises(Degenerate, match="one line"):
+        Poisson().mesh(replace(cloud, points=on_line))
+
+
+@pytest.mark.parametrize("mesher", MESHERS)
+def test_a_point_off_this_earth_is_refused(mesher):
+    cloud = scan_cloud(plane)
+    cloud.points[5, 0] = 1e300
+    with pytest.raises(InputError, match="1e\\+300 m from its origin"):
+        mesher.mesh(cloud)
 
 
 def test_settings_without_sense_are_refused():

@@ -30,6 +30,9 @@ _STEEPEST = 5.0
 turned by 78 degrees still holds together."""
 _SIGMAS = 4.0
 """Standard deviations of the distance between two points that noise alone may add to it."""
+_FARTHEST = 1e8
+"""Distance from the origin beyond which a place is none [m]: coordinates of maps, and of the
+Earth's middle, stay below."""
 _FIELD_SHARE = 0.8
 """Share of a profile's scan lines of one parity above which it is a field of an interlaced
 picture; the rest are centres that a finder has moved by half a line."""
@@ -58,12 +61,18 @@ class ScanGrid:
                 usual distance in that direction, and four standard deviations.
 
         Raises:
-            InputError: A point is not finite, or max_jump is not positive.
+            InputError: A point is not finite or off this Earth, or max_jump is not positive.
         """
         broken = len(cloud) - int(np.isfinite(cloud.points).all(axis=1).sum())
         if broken:
             raise InputError(
                 f"{broken} of {len(cloud)} points are not finite; leave them out of the cloud."
+            )
+        farthest = float(np.abs(cloud.points).max(initial=0.0))
+        if farthest > _FARTHEST:
+            raise InputError(
+                f"The cloud has points {farthest:.3g} m from its origin, farther than any place on "
+                "Earth; leave them out, or give the cloud in metres."
             )
         if max_jump is not None and not max_jump > 0:
             raise InputError(f"max_jump must be above 0, got {max_jump:g} m.")

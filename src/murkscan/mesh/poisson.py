@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, final
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..errors import InputError, MissingDependency
+from ..errors import Degenerate, InputError, MissingDependency
 from ..geometry.grid import ScanGrid
 from ..geometry.point_normals import estimate_point_normals
 from ..types.arrays import Points
@@ -18,6 +18,8 @@ from .base import AbstractMesher, drop_unused_vertices, empty_mesh
 if TYPE_CHECKING:
     from types import ModuleType
 
+_NARROW = 1e-6
+"""Width of a cloud, in its length, up to which it is a line: above what single precision leaves."""
 _MAX_DEPTH = 12
 """Depth above which the octree outgrows the memory of ordinary machines."""
 _FEWEST = 4
@@ -62,11 +64,17 @@ class Poisson(AbstractMesher):
         _import_open3d()
 
     def mesh(self, cloud: PointCloud) -> Mesh:
-        """Make the surface; its vertices lie near the points, not on them."""
+        """Make the surface; its vertices lie near the points, not on them.
+
+        Raises:
+            Degenerate: Points that know no profiles lie on one line.
+        """
         open3d = _import_open3d()
         grid = ScanGrid.from_cloud(cloud)
-        if len(cloud) >= _FEWEST and not grid.is_numbered and not cloud.normals.any():
-            cloud = replace(cloud, normals=estimate_point_normals(cloud.points))
+        if len(cloud) >= _FEWEST and not grid.is_numbered:
+            _require_width(cloud.points)
+            if not cloud.normals.any():
+                cloud = replace(cloud, normals=estimate_point_normals(cloud.points))
         with_normal = cloud[np.any(cloud.normals != 0, axis=1)]
         if len(with_normal) < _FEWEST:
             return empty_mesh()
@@ -76,6 +84,17 @@ class Poisson(AbstractMesher):
         depth = _depth_for(with_normal.points, spacing) if self.depth is None else self.depth
         mesh = _reconstruct(open3d, with_normal, depth)
         return _trim(_face_normals(mesh, with_normal), cloud, reach)
+
+
+def _require_width(points: Points) -> None:
+    """Refuse points on one line: a surface through them could be turned about it at will."""
+    off = points - points.mean(axis=0)
+    _, across, along = np.sqrt(np.maximum(np.linalg.eigvalsh(off.T @ off), 0.0))
+    if across <= _NARROW * along:
+        raise Degenerate(
+            f"The cloud's {len(points)} points lie on one line, through which there is no surface; "
+            "give a scan of two profiles or more."
+        )
 
 
 def _spacings(grid: ScanGrid) -> tuple[float, float]:
