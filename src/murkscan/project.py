@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from .errors import FormatError, InputError, MissingResult
+from .errors import FormatError, InputError, MissingResult, NotEnoughData
 from .io.images import write_image
 from .io.json_files import load_json, save_json
 from .io.mesh_files import load_mesh, save_mesh
@@ -280,8 +280,19 @@ class Project:
             save_mesh(self.root / f"mesh/mesh.{suffix}", mesh)
 
     def load_mesh(self) -> Mesh:
-        """Read the mesh of a finished mesh stage."""
-        return load_mesh(self.finished("mesh").folder / "mesh.ply")
+        """Read the mesh of a finished mesh stage.
+
+        Raises:
+            NotEnoughData: It has no triangles, and so no file.
+        """
+        stage = self.finished("mesh")
+        if stage.counts().get("faces") == 0:
+            raise NotEnoughData(
+                f"The surface of {self.root} has no triangles: its cloud has no two neighbouring "
+                "profiles, or points too far apart. Scan more frames, or look at extract/overlay "
+                "to see what was found in them."
+            )
+        return load_mesh(stage.folder / "mesh.ply")
 
     def save_picture(self, name: str, picture: ColourImage) -> None:
         """Write one picture of the surface, view/<name>.png."""

@@ -108,6 +108,13 @@ def test_a_search_for_dents_says_what_it_could_have_found(scanned, capsys):
         (("distance", "--from-m", "nan,0,0", "--to-m", "0,0,0"), "not X,Y,Z"),
         (("section", "--point-m", "0,0,90", "--normal", "0,0,1"), "does not meet"),
         (("section", "--point-m", "0,0,1", "--normal", "0,0,0"), "no direction"),
+        (("distance", "--from-m", "1e300,0,0", "--to-m", "0,0,0"), "no place on Earth"),
+        (("section", "--point-m", "0,0,90", "--normal", "0,0,1e300"), "does not meet"),
+        (("section", "--point-m", "0,0,90", "--normal", "0,0,1e-320"), "does not meet"),
+        (("dents", "--largest-mm", "nan"), "--largest-mm must be above 0"),
+        (("dents", "--largest-mm", "5"), "below --smallest-mm 20"),
+        (("dents", "--least-depth-mm", "inf"), "--least-depth-mm must be"),
+        (("deviation", "--reference", "here", "--as-given", "--reach-mm", "inf"), "--reach-mm"),
         (("plane", "--name", "../away"), "no name"),
         (("deviation", "--reference", "nowhere.ply"), "nowhere.ply"),
         (("colour",), "colour"),
@@ -117,6 +124,7 @@ def test_a_wrong_measure_is_one_sentence_and_leaves_nothing(scanned, capfd, argu
     def listing():
         return {file.name: file.stat().st_mtime_ns for file in (scanned / "measure").glob("*")}
 
+    arguments = [str(scanned / "mesh/mesh.ply") if word == "here" else word for word in arguments]
     before = listing()
     assert measure(scanned, *arguments) == 2
     said = capfd.readouterr().err
@@ -135,6 +143,28 @@ def test_a_scan_without_points_is_refused(scanned, tmp_path):
     save_cloud(tmp_path / "empty/cloud/cloud.ply", project.load_cloud()[:0])
     with pytest.raises(NotEnoughData, match="no points"):
         measure_points(project, measure_plane)
+
+
+@pytest.mark.parametrize(
+    "what",
+    [
+        ("area",),
+        ("volume",),
+        ("section", "--point-m", "0,0,1", "--normal", "0,0,1"),
+        ("dents",),
+        ("deviation", "--reference", "here", "--as-given"),
+    ],
+)
+def test_a_scan_without_a_surface_says_so_and_why(scanned, tmp_path, capfd, what):
+    shutil.copytree(scanned, tmp_path / "single")
+    project = Project(tmp_path / "single")
+    cloud = project.load_cloud()
+    save_cloud(tmp_path / "single/cloud/cloud.ply", cloud[cloud.frame == cloud.frame[0]])
+    assert run(["mesh", str(tmp_path / "single"), "--colour", "none"]) == 0
+    here = str(scanned / "mesh/mesh.ply")
+    assert measure(tmp_path / "single", *(here if word == "here" else word for word in what)) == 2
+    said = " ".join(capfd.readouterr().err.split())
+    assert "has no triangles: its cloud has no two neighbouring profiles" in said
 
 
 def test_a_single_profile_has_no_dent_to_find(scanned, tmp_path):

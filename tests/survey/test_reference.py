@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from murkscan import Degenerate, FormatError, InputError, Mesh, PointCloud
+from murkscan import Degenerate, FormatError, InputError, Mesh, NotEnoughData, PointCloud
 from murkscan.io.mesh_files import save_mesh
 from murkscan.survey.reference import lay_on, load_reference
 
@@ -84,3 +84,12 @@ def test_a_scan_is_in_metres_whatever_unit_is_asked_for(tmp_path):
 def test_a_drawing_elsewhere_is_refused(drawing):
     with pytest.raises(Degenerate, match="do not overlap"):
         lay_on(load_reference(drawing), _scan(np.array([0.0, 0.0, -30.0])))
+
+
+@pytest.mark.parametrize("unit", ["mm", "in", "cm"])
+def test_a_drawing_in_the_wrong_unit_is_refused_with_both_sizes_and_the_flag(tmp_path, unit):
+    save_mesh(tmp_path / "blade.ply", _sheet(_blade, 0.5, 101))
+    with pytest.raises(
+        (Degenerate, NotEnoughData), match=r"blade\.ply .* the scan 1\.1\d m.*--unit"
+    ):
+        lay_on(load_reference(tmp_path / "blade.ply", unit=unit), _scan(np.zeros(3)))

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 _SHOWN = {"m": ("mm", 1e3), "m2": ("cm²", 1e4), "m3": ("cm³", 1e6), "rad": ("°", 180 / math.pi)}
 """Units as people read them, and how many go into ours."""
+_FARTHEST = 1e8
+"""Distance from the origin beyond which a place is none [m]."""
 
 Place = Annotated[str, Parameter(allow_leading_hyphen=True)]
 """Coordinates parted by commas, of which the first may be negative."""
@@ -65,13 +67,11 @@ class PartFlags:
 
 
 def read_place(flag: str, text: str) -> tuple[float, float, float]:
-    """Read X,Y,Z."""
-    numbers = read_numbers(text, 3)
-    if numbers is None:
-        raise InputError(
-            f"{flag} {text!r} is not X,Y,Z; give three numbers such as 0.12,0.5,0.803."
-        )
-    return _three(numbers)
+    """Read X,Y,Z [m]."""
+    place = _read_three(flag, text)
+    if max(map(abs, place)) > _FARTHEST:
+        raise InputError(f"{flag} {text} is no place on Earth; give X,Y,Z in metres.")
+    return place
 
 
 def read_plane(point_m: str, normal: str) -> "Plane":
@@ -80,10 +80,21 @@ def read_plane(point_m: str, normal: str) -> "Plane":
 
     from ..types.plane import Plane
 
-    direction = np.array(read_place("--normal", normal))
+    direction = np.array(_read_three("--normal", normal))
     if not direction.any():
         raise InputError("--normal 0,0,0 is no direction; give one such as 0,1,0.")
+    # Of numbers near the ends of their range the squares have none.
+    direction /= np.abs(direction).max()
     return Plane.through(np.array(read_place("--point-m", point_m)), direction)
+
+
+def _read_three(flag: str, text: str) -> tuple[float, float, float]:
+    numbers = read_numbers(text, 3)
+    if numbers is None:
+        raise InputError(
+            f"{flag} {text!r} is not X,Y,Z; give three numbers such as 0.12,0.5,0.803."
+        )
+    return _three(numbers)
 
 
 def print_measurement(

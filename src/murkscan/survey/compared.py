@@ -76,6 +76,6 @@ def _lay(other: Project, project: Project) -> Alignment:
     try:
         laid = lay_on(load_reference(other.root), choose_points(project, _SAMPLE))
     except Degenerate as error:
-        raise Degenerate(f"{other.root}: {error} With --as-given both stay as they are.") from error
+        raise Degenerate(f"{error} With --as-given both stay as they are.") from error
     assert laid.alignment is not None
     return turn_round(laid.alignment)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import Degenerate, FormatError, InputError
+from ..errors import Degenerate, FormatError, InputError, NotEnoughData
 from ..geometry.alignment import Alignment, align_surfaces
 from ..geometry.alignment_fit import no_overlap
 from ..geometry.clip import clip_mesh
@@ -36,6 +36,8 @@ class Reference:
     """The surface [m]."""
     alignment: Alignment | None = None
     """How it was laid on the scan; None: it was taken as it is."""
+    name: str = "the reference"
+    """The file or folder that it was read from, for messages."""
 
     @property
     def sigma_along(self) -> Callable[[Points, Directions], Scalars] | None:
@@ -69,10 +71,10 @@ def load_reference(path: Path, *, unit: str = "m") -> Reference:
     if path.is_dir():
         if unit != "m":
             raise InputError(f"{path} is a scan, which is in metres; leave out the unit {unit}.")
-        return Reference(Project(path).load_mesh())
+        return Reference(Project(path).load_mesh(), name=str(path))
     mesh = load_mesh(path)
     _require_spread(mesh, path)
-    return Reference(replace(mesh, vertices=mesh.vertices * UNITS[unit]))
+    return Reference(replace(mesh, vertices=mesh.vertices * UNITS[unit]), name=str(path))
 
 
 def _require_spread(mesh: Mesh, path: Path) -> None:
@@ -95,7 +97,24 @@ def lay_on(reference: Reference, cloud: PointCloud) -> Reference:
 
     Raises:
         Degenerate: They do not overlap: bring the reference nearly into place first.
+        NotEnoughData: One is far too small for the other.
     """
+    try:
+        alignment = _align(reference, cloud)
+    except (Degenerate, NotEnoughData) as error:
+        sizes = [_size(points) for points in (reference.mesh.vertices, cloud.points)]
+        raise type(error)(
+            f"{reference.name} cannot be laid on the scan: it measures {sizes[0]:.3g} m and the "
+            f"scan {sizes[1]:.3g} m. Check that it lies where the scan does and, of a file, its "
+            f"--unit. ({error})"
+        ) from error
+    scan_from_reference = alignment.target_from_source.inverse()
+    moved = replace(reference.mesh, vertices=scan_from_reference @ reference.mesh.vertices)
+    return replace(reference, mesh=moved, alignment=alignment)
+
+
+def _align(reference: Reference, cloud: PointCloud) -> Alignment:
+    """Find where the scan lies in the reference."""
     scan, size = SurfacePoints.from_cloud(cloud), np.ptp(cloud.points, axis=0)
     margin = _AROUND * float(np.linalg.norm(size))
     low, high = cloud.points.min(axis=0) - margin, cloud.points.max(axis=0) + margin
@@ -105,7 +124,8 @@ def lay_on(reference: Reference, cloud: PointCloud) -> Reference:
     surface = SurfacePoints.from_mesh(part, spacing=scan.spacing)
     if surface.spacing > scan.spacing:
         scan = SurfacePoints.from_cloud(cloud, spacing=surface.spacing)
-    alignment = align_surfaces(scan, surface)
-    scan_from_reference = alignment.target_from_source.inverse()
-    moved = replace(reference.mesh, vertices=scan_from_reference @ reference.mesh.vertices)
-    return Reference(moved, alignment)
+    return align_surfaces(scan, surface)
+
+
+def _size(points: Points) -> float:
+    return float(np.linalg.norm(np.ptp(points, axis=0)))
