@@ -24,6 +24,7 @@ from murkscan.measure import (
     measure_step,
     trust_plane,
 )
+from murkscan.optics import light_across, refractive_index
 from murkscan.simulate import Scene, parse_scene, read_scene, simulate_frames
 from murkscan.triangulate import RaySheet
 from murkscan.triangulate.base import triangulate
@@ -83,7 +84,10 @@ def scan(scene: Scene, extractor_name: str, frames: list[Frame]) -> Sample:
     rays = cloud.points - cameras
     rays /= np.linalg.norm(rays, axis=1, keepdims=True)
     along = np.tile([1.0, 0.0, 0.0], (len(cloud), 1))
-    return Sample.from_cloud(cloud, sight=Sight(rays, along))
+    rig = scene.rig
+    light = light_across(rig.lasers[0], refractive_index(rig.water, rig.wavelength))
+    sight = Sight(rays, along, np.tile(light, (len(cloud), 1)))
+    return Sample.from_cloud(cloud, sight=sight)
 
 
 @dataclass(frozen=True)

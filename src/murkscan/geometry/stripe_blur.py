@@ -19,8 +19,9 @@ from ..types.arrays import Directions, Mask, Points, Scalars
 from .shape import AnyShape
 
 _LEAST_FACING = 0.5
-"""Cosine of the angle between normal and line of sight below which a blurred stripe of a curved
-surface is not to be trusted: 60 degrees."""
+"""Cosine of the angle between normal and line of sight, or the light, below which the stripe on a
+curved surface is not to be trusted: 60 degrees. Where the light grazes, the stripe widens, and its
+far side is darker than its near one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,10 +32,14 @@ class Sight:
     """Unit direction from the camera to each point."""
     along: Directions
     """Unit direction in which the stripe runs in the picture, at each point."""
+    light: Directions | None = None
+    """Unit direction of the light at each point, as far as it lies across the stripe; None where
+    nobody knows."""
 
     def __getitem__(self, which: Mask) -> "Sight":
         """Pick some of the points."""
-        return Sight(self.rays[which], self.along[which])
+        light = None if self.light is None else self.light[which]
+        return Sight(self.rays[which], self.along[which], light)
 
 
 def blur_slopes(shape: AnyShape, points: Points, sight: Sight) -> Scalars:
@@ -44,9 +49,15 @@ def blur_slopes(shape: AnyShape, points: Points, sight: Sight) -> Scalars:
 
 
 def is_readable(shape: AnyShape, points: Points, sight: Sight) -> Mask:
-    """Tell which points do not lie where a curved surface turns away from the camera."""
+    """Tell which points do not lie where a curved surface turns from the camera or the light."""
     bent = np.abs(shape.curvature(sight.along)) > 0
-    return ~bent | (np.abs(_facing(shape, points, sight)) > _LEAST_FACING)
+    normals = shape.normals(points)
+    turned = [
+        np.abs(np.einsum("ij,ij->i", normals, way)) <= _LEAST_FACING
+        for way in (sight.rays, sight.light)
+        if way is not None
+    ]
+    return ~bent | ~np.any(turned, axis=0)
 
 
 def _lean(shape: AnyShape, points: Points, sight: Sight) -> Scalars:

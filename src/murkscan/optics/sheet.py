@@ -8,7 +8,7 @@ from .._kernels.fan import Fan as FanArrays
 from .._kernels.fan import locate_points, meet_fan, trace_fan_rays
 from ..geometry.intersect import intersect_rays_with_plane
 from ..geometry.plane_fit import fit_plane
-from ..types.arrays import Points, Scalars
+from ..types.arrays import Points, Scalars, Vector
 from ..types.laser import Fan, FanCoordinates, Laser
 from ..types.plane import Plane
 from ..types.rays import Rays
@@ -153,3 +153,18 @@ def _keep_lit(fan: Fan, points: Points) -> Points:
 def _as_arrays(fan: Fan) -> FanArrays:
     x, y, z = fan.origin, fan.direction, fan.tangent
     return FanArrays(as_triple(x), as_triple(y), as_triple(z), float(np.tan(fan.half_angle)))
+
+
+def light_across(laser: Laser, index: float | None = None) -> Vector:
+    """Give where a laser's light goes, as far as it goes across the stripe.
+
+    Args:
+        laser: The laser.
+        index: Refractive index of what lies outside; may be left out where no port is.
+
+    Returns:
+        Unit direction in the camera frame, away from the camera.
+    """
+    along = np.array([1.0, 0.0, 0.0] if laser.axis == "y" else [0.0, 1.0, 0.0])
+    light = np.cross(equivalent_plane(laser, index).normal, along)
+    return light * np.copysign(1 / np.linalg.norm(light), light[2])

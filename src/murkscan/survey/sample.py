@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 from ..errors import NotEnoughData
 from ..geometry.stripe_blur import Sight
 from ..measure import Sample, Selection
+from ..optics import light_across, refractive_index
 from ..optics.uncertainty import common_shifts
 from ..project import Project
 from ..types.arrays import Indices, Scalars, Vector
@@ -77,7 +78,10 @@ def _look_back(project: Project, cloud: PointCloud, rig: Rig) -> Sight | None:
     across = np.array([axes[laser] == "x" for laser in cloud.laser.tolist()])
     stripe = np.where(across[:, None], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0])
     along = trajectory.transform(stripe, times) - cameras
-    return Sight(rays, along)
+    index = refractive_index(rig.water, rig.wavelength)
+    lights = {laser: light_across(rig.lasers[laser], index) for laser in axes}
+    light = np.array([lights[laser] for laser in cloud.laser.tolist()])
+    return Sight(rays, along, trajectory.transform(light, times) - cameras)
 
 
 def _times_of(project: Project, cloud: PointCloud) -> Scalars | None:
