@@ -155,13 +155,16 @@ def _pair(
     residuals = np.einsum("ij,ij->i", mean, between)
     aside = np.sqrt(np.maximum(np.einsum("ij,ij->i", between, between) - residuals**2, 0))
     spread = _GAUSSIAN * float(np.median(np.abs(residuals))) if len(near) else 0.0
+    # Where normals differ, the surface between two points that lie aside is not known so well.
+    off = np.einsum("ij,ij->i", ours - theirs, ours - theirs)
+    expected = np.sqrt(max(spread, 1e-9) ** 2 + off * aside**2 / 4)
     # Beyond the rim of the target, the nearest of its points lies aside.
-    kept = (np.abs(residuals) <= max(_ROBUST * spread, 1e-9)) & (aside <= _ASIDE * target.spacing)
+    kept = (np.abs(residuals) <= _ROBUST * expected) & (aside <= _ASIDE * target.spacing)
     ours_count, theirs_count = source.weights[near], target.weights[there]
     weights = 2 * ours_count * theirs_count / (ours_count + theirs_count)
+    weights *= (max(spread, 1e-9) / expected) ** 2
     # Two normals differ in two directions by the noise of both, and their mean has half of each.
-    off = np.einsum("ij,ij->i", ours - theirs, ours - theirs)[kept]
-    noise = float(off.mean()) / 8 if kept.any() else 0.0
+    noise = float(np.average(off[kept], weights=weights[kept])) / 8 if kept.any() else 0.0
     return _Pairs(points[near[kept]], mean[kept], residuals[kept], weights[kept], noise)
 
 
