@@ -11,8 +11,8 @@ from .rig_parameters import tilt_directions as tilt_directions
 from .sheet import as_fan as as_fan
 from .sheet import distance_to_sheet as distance_to_sheet
 from .sheet import equivalent_plane as equivalent_plane
-from .sheet import light_across as light_across
 from .sheet import intersect_rays_with_sheet as intersect_rays_with_sheet
+from .sheet import light_across as light_across
 from .sheet import locate_on_fan as locate_on_fan
 from .sheet import trace_fan as trace_fan
 from .view import back_project as back_project
