@@ -17,6 +17,7 @@ from murkscan.measure import (
     measure_sphere,
     measure_step,
 )
+from murkscan.types.plane import span_plane
 
 from .. import scans
 
@@ -194,3 +195,37 @@ def test_a_step_to_a_single_profile_is_none():
     low, high = whole[y > 5e-3], whole[y < -5e-3]
     with pytest.raises(NotEnoughData, match="1 profile,"):
         measure_step(low, high[high.profile == int(np.median(high.profile))])
+
+
+def _crossing(cylinder: dict, name: str, y: float) -> float:
+    slope = cylinder[f"axis_{name}"].value / cylinder["axis_y"].value
+    return cylinder[name].value + slope * (y - cylinder["y"].value)
+
+
+def test_where_a_leaning_axis_passes_scatters_as_stated_and_one_coordinate_is_set():
+    random = np.random.default_rng(5)
+    axis = np.array([0.5, 0.8, 0.1])
+    axis /= np.linalg.norm(axis)
+    sides = span_plane(axis)
+    angle, height = random.uniform(0, np.pi, 600), random.uniform(-0.1, 0.1, 600)
+    out = np.cos(angle)[:, None] * sides[0] + np.sin(angle)[:, None] * sides[1]
+    clean = 0.05 * out + height[:, None] * axis + [0.2, 0.3, 0.9]
+    found = []
+    for _ in range(24):
+        points = clean + 1e-4 * random.standard_normal((600, 1)) * out
+        cloud = scans.scan_cloud(scans.plane)[:600]
+        cloud = replace(
+            cloud,
+            points=points,
+            normals=out.astype(np.float32),
+            frame=np.arange(600, dtype=np.int32) * 9,
+        )
+        found.append(
+            {one.name: one for one in measure_cylinder(Sample.from_cloud(cloud)).quantities}
+        )
+    # Each fit sets y to its own points' middle: along the axis from there to y = 0.3.
+    crossing = np.array([[_crossing(one, name, 0.3) for name in "xz"] for one in found])
+    stated = np.array([[one[name].sigma_independent for name in "xz"] for one in found])
+    assert {one["y"].half_width for one in found} == {0.0}
+    # 24 trials know a deviation to a seventh.
+    np.testing.assert_allclose(crossing.std(axis=0), stated.mean(axis=0), rtol=0.45)

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 _SHOWN = {"m": ("mm", 1e3), "m2": ("cm²", 1e4), "m3": ("cm³", 1e6), "rad": ("°", 180 / math.pi)}
 """Units as people read them, and how many go into ours."""
+_DIGITS = 6
+"""Digits behind the point, at most: a nanometre, or what a hair's width is of a hundred metres."""
 _FARTHEST = 1e8
 """Distance from the origin beyond which a place is none [m]."""
 
@@ -133,6 +135,10 @@ def _tell_common(out: Path, found: "Measurement") -> None:
 def _row(quantity: "Quantity") -> tuple[str, ...]:
     unit, scale = _SHOWN.get(quantity.unit, (quantity.unit, 1.0))
     half, common = scale * quantity.half_width, quantity.sigma_common
+    # Set, as one coordinate of a cylinder's axis is, or given by the others, as of a direction.
+    if half < 0.5 * 10.0**-_DIGITS:
+        name, value = quantity.name.replace("_", " "), scale * quantity.value
+        return (name, f"{value:.4f}", "–", "", "", unit)
     return (
         quantity.name.replace("_", " "),
         _round(scale * quantity.value, half),
@@ -144,9 +150,9 @@ def _row(quantity: "Quantity") -> tuple[str, ...]:
 
 
 def _round(value: float, uncertainty: float) -> str:
-    """Write a number to two digits of its uncertainty."""
+    """Write a number to two digits of its uncertainty, up to a millionth."""
     digits = 1 - math.floor(math.log10(uncertainty)) if uncertainty > 0 else 4
-    return f"{value:.{min(max(digits, 0), 9)}f}"
+    return f"{value:.{min(max(digits, 0), _DIGITS)}f}"
 
 
 def _three(numbers: Iterable[float]) -> tuple[float, float, float]:

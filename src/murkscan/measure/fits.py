@@ -80,6 +80,9 @@ def measure_sphere(sample: Sample) -> Measurement:
 def measure_cylinder(sample: Sample) -> Measurement:
     """Fit a cylinder: radius, diameter, a point of its axis and the axis' direction.
 
+    Of the point that coordinate in whose direction the axis runs most is set, to the middle of the
+    points, and has no uncertainty; the other two say where the axis passes there.
+
     Raises:
         NotEnoughData: Fewer than six points, or three profiles.
         Degenerate: The points do not curve, or cover too little of the cylinder.
@@ -95,6 +98,10 @@ def measure_cylinder(sample: Sample) -> Measurement:
     how = np.zeros((8, fit.slopes.shape[1]))
     how[0, 4], how[1, 4] = 1, 2
     how[2:5, :2] = how[5:, 2:4] = sides.T
+    # The set coordinate stays: what would move it moves the point along the axis instead.
+    most = int(np.argmax(np.abs(cylinder.axis)))
+    how[2:5] -= np.outer(cylinder.axis / cylinder.axis[most], how[2 + most])
+    how[2 + most] = 0.0
     units = ("m",) * 5 + ("",) * 3
     return _tell("cylinder", fit, trust_fit(fit, sample), values, units, how)
 
