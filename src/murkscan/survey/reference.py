@@ -103,10 +103,12 @@ def lay_on(reference: Reference, cloud: PointCloud) -> Reference:
         alignment = _align(reference, cloud)
     except (Degenerate, NotEnoughData) as error:
         sizes = [_size(points) for points in (reference.mesh.vertices, cloud.points)]
+        # What follows the first sentence is the cure for passes that are merged.
+        cause = str(error).partition(". ")[0]
         raise type(error)(
             f"{reference.name} cannot be laid on the scan: it measures {sizes[0]:.3g} m and the "
             f"scan {sizes[1]:.3g} m. Check that it lies where the scan does and, of a file, its "
-            f"--unit. ({error})"
+            f"--unit. ({cause}.)"
         ) from error
     scan_from_reference = alignment.target_from_source.inverse()
     moved = replace(reference.mesh, vertices=scan_from_reference @ reference.mesh.vertices)
