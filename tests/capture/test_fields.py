@@ -50,7 +50,7 @@ def test_the_order_is_found_whichever_way_the_stripe_runs_and_however_fast(order
 @pytest.mark.parametrize("order", ORDERS)
 @pytest.mark.parametrize("along", ["rows", "columns"])
 def test_the_order_is_found_in_low_light(order, along):
-    # The stripe is but twice the noise of a pixel.
+    # The stripe is but twice the noise of a pixel: four runs or more have to agree.
     pictures = film(order, 25, along=along, peak=25, noise=12)
     fives = [pictures[start : start + 5] for start in range(0, 25, 5)]
     assert find_field_order(fives) == order

@@ -55,6 +55,13 @@ def test_the_limit_is_that_of_what_was_found_where_the_stripe_fades(limit):
     assert reach.tell(np.array([0.5, 1.5 * true])).tolist() == [TOO_DARK, TOO_FAR]
 
 
+def test_a_false_point_far_away_hides_nothing():
+    ranges, signals = _seen(0.4, 2.0, limit=10.0)
+    clean = Reach.from_points(ranges, signals, noise=0.3)
+    strayed = Reach.from_points(np.append(ranges, 30.0), np.append(signals, 12.0), noise=0.3)
+    assert strayed.farthest == pytest.approx(clean.farthest, abs=0.03)
+
+
 def test_on_an_even_bright_wall_nothing_is_too_far():
     ranges, signals = _seen(0.6, 0.62, limit=1.0)
     reach = Reach.from_points(ranges, signals, noise=0.3)

@@ -159,7 +159,9 @@ def test_a_folder_is_used_again_but_no_photos_are_lost(tmp_path):
     assert (tmp_path / "mine/frames/a.png").read_bytes() == b"a photo"
 
 
-@pytest.mark.parametrize("name", ["rig.toml", "poses.csv", "scan.json", "cloud/cloud.ply"])
+@pytest.mark.parametrize(
+    "name", ["rig.toml", "poses.csv", "scan.json", "cloud/cloud.ply", "truth/gps.csv"]
+)
 def test_a_folder_that_no_simulation_has_made_stays_as_it_is(tmp_path, name):
     mine = tmp_path / name
     mine.parent.mkdir(exist_ok=True)

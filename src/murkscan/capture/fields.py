@@ -34,10 +34,11 @@ _APART = 0.1
 _AGREEMENT = 0.8
 """Share of the runs that move, from which they say the same."""
 _FAINT = 0.2
-"""Difference of b and c, as a share of both, up to which rows that miss a part of a narrow stripe,
-or snow, may make it; they do so to either side as the stripe wanders, if there are"""
+"""Difference of b and c, as a share of both, up to which rows that miss a part of a narrow stripe
+may make it, in progressive pictures, too: to either side, as the stripe wanders."""
 _FEWEST = 4
-"""runs enough to see that."""
+"""Runs over which such a stripe wanders, so that a faint lean to one side in all of them is none of
+its doing."""
 
 _SPOTTY = 10.0
 """Fourth powers of differences over the square of their squares, from which they are spots."""
@@ -215,8 +216,9 @@ def _judge(motions: np.ndarray, leans: np.ndarray, sums: np.ndarray) -> FieldVer
     apart = sums[0, best] >= _APART * min(sums[1, best], sums[2, best])
     if abs(ratio) < _LEAN or not agreed or not apart:
         return "progressive"
+    num_runs = len(motions) - 1  # the first stands for none
     faint = abs(sums[2, best] - sums[1, best]) < _FAINT * (sums[1, best] + sums[2, best])
-    if certain < _SIGNIFICANT or (faint and len(motions) - 1 < _FEWEST):
+    if certain < _SIGNIFICANT or (faint and num_runs < _FEWEST):
         return "undecided"
     return "top-first" if ratio > 0 else "bottom-first"
 

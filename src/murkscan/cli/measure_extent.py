@@ -1,6 +1,5 @@
 """murkscan measure step, area and volume."""
 
-
 from ..errors import InputError
 from .measure_part import (
     CloudScan,

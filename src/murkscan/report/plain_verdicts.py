@@ -20,7 +20,9 @@ def as_plain_verdicts(summary: ScanSummary) -> dict[str, Any]:
     """Give what a report says beyond counts and spreads; None for what is not known."""
     recorded = summary.recorded
     return {
-        "coverage": None if summary.coverage is None else _coverage(summary.coverage),
+        "coverage": None
+        if summary.coverage is None
+        else _coverage(summary.coverage, summary.wanted),
         "speed": None if summary.speed is None else _speed(summary.speed, summary.wanted),
         "signal_histogram_grey_levels": _histogram(summary.signals, 1.0),
         "sigma_histogram_mm": _histogram(summary.sigmas, 1e3),
@@ -44,9 +46,10 @@ def as_plain_verdicts(summary: ScanSummary) -> dict[str, Any]:
     }
 
 
-def _coverage(coverage: Coverage) -> dict[str, Any]:
+def _coverage(coverage: Coverage, wanted: float | None) -> dict[str, Any]:
     directions = coverage.directions
     return {
+        "wanted_spacing_mm": _perhaps(wanted, 1e3),
         "judged_by_spacing_mm": round_off(1e3 * coverage.wanted),
         "hole_above_mm": round_off(1e3 * coverage.hole),
         "share_covered": round_off(coverage.covered / coverage.mapped),

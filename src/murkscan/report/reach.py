@@ -13,6 +13,8 @@ so many times it is found, unless the paint is darker by that factor."""
 _BINS = 64
 _FEWEST = 20
 """Points of a bin of ranges below which it says nothing."""
+_STRAY = 0.1
+"""Percent of the points at either end of the ranges that share the bin beside them."""
 _NEAR, _WEAK = 5, 1
 """Percent of the points: so many are nearer than near, and weaker than the weakest."""
 _HIDDEN = 5.0
@@ -77,7 +79,8 @@ class Reach:
 
 def _medians(ranges: Scalars, signals: Scalars) -> tuple[Scalars, Scalars]:
     """Give the middle of bins of equal width that hold enough points, and their median signal."""
-    edges = np.linspace(ranges.min(), ranges.max(), _BINS + 1)
+    # A few false points far away must not make one bin of all others.
+    edges = np.linspace(*np.percentile(ranges, [_STRAY, 100 - _STRAY]), _BINS + 1)
     which = np.clip(np.searchsorted(edges, ranges, side="right") - 1, 0, _BINS - 1)
     order = np.argsort(which, kind="stable")
     groups = np.split(order, np.cumsum(np.bincount(which, minlength=_BINS))[:-1])

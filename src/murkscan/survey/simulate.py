@@ -30,8 +30,8 @@ _FASTEST = 500.0
 """Pictures a second that a video's times can tell apart."""
 _PART = 64
 """Frames whose truth is written at once."""
-_MARK = "truth"
-"""The folder that only simulations have, and have from the beginning."""
+_MARK = "truth/README.txt"
+"""The file that only simulations have, and have from the beginning."""
 _NO_WORK = ("stage.json",)
 """What may lie in a new folder: the demo's note of what it simulates."""
 
@@ -105,7 +105,7 @@ def _require_ours(out: Path) -> None:
     """Refuse a folder whose rig, poses or pictures are somebody's own."""
     others = [file for file in sorted(out.glob("*")) if file.name not in _NO_WORK]
     others = [file for file in others if not file.name.startswith(".")]
-    if out.is_file() or (others and not (out / _MARK).is_dir()):
+    if out.is_file() or (others and not (out / _MARK).is_file()):
         raise InputError(
             f"{others[0] if others else out} is not of a simulation; give a new folder for the "
             "recording."
@@ -114,7 +114,9 @@ def _require_ours(out: Path) -> None:
 
 def _clear(out: Path) -> None:
     """Take away what an earlier simulation left, and mark the folder as one's before all else."""
-    (out / _MARK).mkdir(parents=True, exist_ok=True)
+    (out / _MARK).parent.mkdir(parents=True, exist_ok=True)
+    with replacing(out / _MARK) as aside:
+        aside.write_text("What is true of a recording that murkscan has simulated.\n", "utf-8")
     left = [out / "recording.mkv", out / "navigation.csv", out / "frames" / "times.csv"]
     left += (file for file in (out / "frames").glob("*.png") if file.stem.isdecimal())
     for path in left:
