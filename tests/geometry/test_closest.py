@@ -51,6 +51,14 @@ def test_beyond_the_reach_nothing_is_found():
     assert np.isnan(found.places[1:]).all()
 
 
+def test_where_there_is_no_surface_nothing_is_near():
+    found = find_closest(
+        np.zeros((2, 3)), Mesh(np.zeros((3, 3)), np.zeros((0, 3), np.int32)), within=1.0
+    )
+    assert np.isinf(found.distance).all()
+    assert (found.face == -1).all()
+
+
 def test_points_beside_a_surface_are_nearest_to_its_rim_and_those_above_it_are_not():
     count = 7
     v, u = np.mgrid[:count, :count]

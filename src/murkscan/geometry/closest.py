@@ -36,6 +36,10 @@ def find_closest(points: Points, mesh: Mesh, *, within: float) -> Closest:
         mesh: The surface.
         within: Distance beyond which none is looked for [m].
     """
+    if len(mesh.faces) == 0:
+        nowhere = np.full((len(points), 3), np.nan)
+        far = np.full(len(points), np.inf)
+        return Closest(nowhere, np.full(len(points), -1), far, np.zeros(len(points), bool))
     triangles = mesh.vertices[mesh.faces]
     order = sort_triangles(triangles.mean(axis=1))
     triangles = triangles[order]

@@ -80,7 +80,8 @@ class SurfacePoints:
         normals = normals[sound] / length[sound, None]
         points, weights = points[sound], weights[sound]
         _require(len(points))
-        return cls(_level(points, normals, weights), normals, weights, spacing, is_oriented)
+        level = _level(points, normals, weights, is_oriented=is_oriented)
+        return cls(level, normals, weights, spacing, is_oriented)
 
     @classmethod
     def from_mesh(cls, mesh: Mesh, *, spacing: float | None = None) -> "SurfacePoints":
@@ -122,7 +123,9 @@ def _spacing_for(points: Points, wanted: int) -> float:
     )
 
 
-def _level(points: Points, normals: Directions, weights: Scalars) -> Points:
+def _level(
+    points: Points, normals: Directions, weights: Scalars, *, is_oriented: bool = True
+) -> Points:
     """Move each point along its normal to the mean height of its neighbours.
 
     A cube of which the surface cuts off a corner holds only what noise has carried there, and lies
@@ -131,9 +134,10 @@ def _level(points: Points, normals: Directions, weights: Scalars) -> Points:
     """
     _, near = cKDTree(points).query(points, k=min(_AROUND, len(points)))
     heights = np.einsum("nkj,nj->nk", points[near] - points[:, None], normals)
-    # The other side of a thin plate is another surface.
-    alike = np.einsum("nkj,nj->nk", normals[near], normals) > _ALIKE
-    shares = np.where(alike, weights[near], 0.0)
+    agree = np.einsum("nkj,nj->nk", normals[near], normals)
+    # The other side of a thin plate is another surface, if sides are known.
+    alike = agree if is_oriented else np.abs(agree)
+    shares = np.where(alike > _ALIKE, weights[near], 0.0)
     mean = (heights * shares).sum(axis=1) / shares.sum(axis=1)
     return points + mean[:, None] * normals
 
