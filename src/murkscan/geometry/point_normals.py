@@ -7,7 +7,7 @@ from scipy.sparse.csgraph import breadth_first_order, connected_components, mini
 from scipy.spatial import KDTree
 
 from ..errors import NotEnoughData
-from ..types.arrays import Directions, Indices, Normals, Points
+from ..types.arrays import Directions, Normals, Points
 
 _NEIGHBOURS = 30
 """Points around a place that make its plane: where a scanner's lines are five times as far apart as
@@ -60,21 +60,27 @@ def _turn_alike(points: Points, normals: Directions, near: Near) -> Float[np.nda
     graph = sparse.csr_matrix((weights, (here, there.ravel())), shape=(len(points),) * 2)
     tree = sparse.csr_matrix(minimum_spanning_tree(graph.maximum(graph.T)))
     count, piece = connected_components(tree, directed=False)
-    sign = np.ones(len(points))
     by_depth = np.argsort(points[:, 2], kind="stable")
     _, first = np.unique(piece[by_depth], return_index=True)
     assert len(first) == count
-    for start in by_depth[first].tolist():
-        _follow(tree, start, normals, sign)
-    return sign
+    return _follow(tree, by_depth[first], normals)
 
 
-def _follow(tree: sparse.csr_matrix, start: int, normals: Directions, sign: np.ndarray) -> None:
-    """Set the signs of one piece, from its point with the smallest z."""
-    order, before = breadth_first_order(tree, start, directed=False)
-    sign[start] = -1.0 if normals[start, 2] > 0 else 1.0
-    later: Indices = order[1:]
+def _follow(
+    tree: sparse.csr_matrix, starts: Int[np.ndarray, " pieces"], normals: Directions
+) -> Float[np.ndarray, " n"]:
+    """Give the signs of all pieces, each from its point with the smallest z."""
+    count, edges = len(normals), tree.tocoo()
+    # One root above the starts of all pieces: a search for each would go through all points.
+    row = np.concatenate([edges.row, np.full(len(starts), count)])
+    column = np.concatenate([edges.col, starts])
+    joined = sparse.csr_matrix((np.ones(len(row)), (row, column)), shape=(count + 1,) * 2)
+    order, before = breadth_first_order(joined, count, directed=False)
+    sign = np.ones(count)
+    sign[starts] = np.where(normals[starts, 2] > 0, -1.0, 1.0)
+    later = order[1 + len(starts) :]
     dots = np.einsum("ij,ij->i", normals[later], normals[before[later]])
     turns = np.where(dots < 0, -1.0, 1.0).tolist()
     for point, parent, turn in zip(later.tolist(), before[later].tolist(), turns, strict=True):
         sign[point] = turn * sign[parent]
+    return sign
