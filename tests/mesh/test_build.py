@@ -25,7 +25,9 @@ def project(tmp_path):
     cloud = scan_cloud(holed, spacing=2e-3)
     with project.writing_cloud() as write:
         write(cloud)
-    stage.finish({"points": len(cloud), "outliers": 0}, since=time.monotonic())
+    passes = [{"path": "wall.ply", "frames": [0, int(cloud.frame.max())], "alignment": None}]
+    told = {"points": len(cloud), "outliers": 0, "passes": passes}
+    stage.finish(told, since=time.monotonic())
     return project
 
 
