@@ -103,8 +103,9 @@ def align_surfaces(
 
     Generalised ICP finds the place. From there least squares of the distances along the normals,
     on the pairs that agree, refine it, moving nothing along directions that the overlap does not
-    show. The covariance is that of 64 pieces of the overlap, each of which may err as a whole:
-    errors that reach farther than a piece, of a wrong calibration say, are not in it.
+    show. The covariance is the larger of that of 64 pieces of the overlap and
+    those of 12 slabs across it, in 8 directions, each of which may err as a whole: errors that
+    reach farther than a slab, of a wrong calibration say, are not in it.
 
     Args:
         source: The surface that moves.
@@ -122,7 +123,9 @@ def align_surfaces(
         sampling for the ICP algorithm, 3DIM 2003, for the directions. Liang and Zeger,
         Longitudinal data analysis using generalized linear models, Biometrika 73(1), 1986, and
         MacKinnon and White, Some heteroskedasticity-consistent covariance matrix estimators,
-        J. Econometrics 29(3), 1985, for the covariance.
+        J. Econometrics 29(3), 1985, for the covariance. Bell and McCaffrey, Bias reduction in
+        standard errors for linear regression with multi-stage samples, Survey Methodology 28(2),
+        2002, for leaving out pieces.
     """
     start = start or Pose.identity()
     size = min(float(np.linalg.norm(np.ptp(s.points, axis=0))) for s in (source, target))

@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
+from scipy.stats import t as student_t
 
 from ..errors import Degenerate
 from ..types.arrays import Directions, Indices, Points, Scalars, Vector
@@ -35,7 +36,15 @@ _OPEN = 10.0
 _FLATTEST = 1e-4
 """Mean square of the normals' share along a direction below which it is open in any case."""
 _BLOCKS = 64
-"""Pieces of the overlap that are taken as independent of one another."""
+"""Pieces of the overlap that may be independent of one another."""
+_SLABS = 12
+"""The same for slabs that reach across all of it."""
+_DIRECTIONS = 8
+"""Directions in which slabs are cut: profiles and scan lines may run any way."""
+_NORMAL_95 = 1.96
+"""Standard deviations of a Gaussian that hold 95 %."""
+_LEAST_REST = 0.02
+"""Share of what shows a direction that is taken to be left without any one piece."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,8 +64,8 @@ class AlignmentFit:
     determined: Float[np.ndarray, "6 determined"]
     information: Float[np.ndarray, " determined"]
     """Sum of squares along each determined motion."""
-    block: Indices
-    """Number of the piece that each pair lies in."""
+    cuts: tuple[Indices, ...]
+    """Several ways to cut the overlap into pieces: the number of each pair's piece in each."""
 
     @classmethod
     def at(
@@ -93,7 +102,7 @@ class AlignmentFit:
             motions[:, is_open],
             motions[:, ~is_open],
             information[~is_open],
-            _cut(pairs.points),
+            _cut_all(pairs.points),
         )
 
     def step(self, pose: Pose, start: Pose) -> tuple[Pose, float]:
@@ -109,13 +118,15 @@ class AlignmentFit:
         return about @ pose, float(np.linalg.norm(change))
 
     def covariance(self) -> Matrix6:
-        """Give the covariance of a turn [rad] and a shift [m]."""
-        inverse = (self.determined / self.information) @ self.determined.T
-        scores = self.jacobian * (self.weights * self.residuals)[:, None]
-        pieces = np.stack([np.bincount(self.block, weights=column) for column in scores.T], axis=1)
-        # The fit has made the residuals smaller than the errors: MacKinnon and White's HC3.
-        few = len(pieces) / max(len(pieces) - self.determined.shape[1], 1)
-        covariance = inverse @ (pieces.T @ pieces * few**2) @ inverse
+        """Give the covariance of a turn [rad] and a shift [m].
+
+        The pieces of each cut are left out in turn; that cut counts by which the least is known,
+        since its pieces are what errs as a whole.
+        """
+        own = self.jacobian @ self.determined
+        known = [_leave_out(own, self.weights, self.residuals, pieces) for pieces in self.cuts]
+        covariance = max(known, key=lambda one: float(np.diag(one) @ self.information))
+        covariance = self.determined @ covariance @ self.determined.T
         unit = np.diag(np.repeat([1 / self.length, 1.0], 3))
         return unit @ covariance @ unit
 
@@ -171,6 +182,44 @@ def _pair(
 def sensitivity(arms: Points, directions: Directions, length: float) -> Jacobian:
     """Give how far each point moves along its direction with a turn (times length) and a shift."""
     return np.concatenate([np.cross(arms, directions) / length, directions], axis=1)
+
+
+def _leave_out(
+    jacobian: Float[np.ndarray, "n k"], weights: Scalars, residuals: Scalars, piece: Indices
+) -> Float[np.ndarray, "k k"]:
+    """Give the covariance of least squares by what leaving out each piece would change.
+
+    A piece that alone fixes a direction shows no residual there: only without it is its error seen.
+    """
+    moments = weights[:, None] * jacobian
+    whole = jacobian.T @ moments
+    found, count = np.zeros_like(whole), 0
+    order = np.argsort(piece, kind="stable")
+    for part in np.split(order, np.flatnonzero(np.diff(piece[order])) + 1):
+        rest = whole - jacobian[part].T @ moments[part]
+        # What only this piece shows is as good as open without it, but not endless.
+        rest += _LEAST_REST * whole
+        change = np.linalg.solve(rest, moments[part].T @ residuals[part])
+        found += np.outer(change, change)
+        count += 1
+    # Scaled so that 1.96 standard deviations hold 95 %, however few the pieces are.
+    return found * (student_t.ppf(0.975, max(count - 1, 1)) / _NORMAL_95) ** 2
+
+
+def _cut_all(points: Points) -> tuple[Indices, ...]:
+    """Cut a surface into pieces, and into slabs across it in several directions.
+
+    Errors of a finder may reach along a scan line over all of a pass, those of a log over a whole
+    profile, and from each to the next ones.
+    """
+    off = points - points.mean(axis=0)
+    first, second = np.linalg.eigh(off.T @ off)[1][:, :0:-1].T
+    slabs = []
+    for angle in np.arange(_DIRECTIONS) * (np.pi / _DIRECTIONS):
+        along = off @ (np.cos(angle) * first + np.sin(angle) * second)
+        share = (along - along.min()) / max(float(np.ptp(along)), 1e-300)
+        slabs.append(np.minimum((_SLABS * share).astype(np.int64), _SLABS - 1))
+    return (_cut(points), *slabs)
 
 
 def _cut(points: Points) -> Indices:

@@ -22,8 +22,8 @@ def describe_alignment(alignment: Alignment | None, *, whose: str = "it") -> str
     shift, turn = _motion(alignment)
     sigma = np.sqrt(np.diag(alignment.covariance))
     words = (
-        f"moved {_three(shift * 1e3)} ± {_three(sigma[3:] * 1e3)} mm along x, y, z and turned "
-        f"{_three(np.degrees(turn), 4)} ± {_three(np.degrees(sigma[:3]), 4)} deg about them; "
+        f"moved {_with_sigma(shift * 1e3, sigma[3:] * 1e3)} mm along x, y, z and turned "
+        f"{_with_sigma(np.degrees(turn), np.degrees(sigma[:3]))} deg about them; "
         f"{alignment.overlap:.0%} of {whose} overlaps, {alignment.rms * 1e3:.2f} mm RMS apart"
     )
     if alignment.open_directions:
@@ -83,5 +83,12 @@ def _motion(alignment: Alignment) -> tuple[np.ndarray, np.ndarray]:
     return alignment.centre - before[0], turn
 
 
-def _three(numbers: np.ndarray, digits: int = 2) -> str:
+def _with_sigma(numbers: np.ndarray, sigma: np.ndarray) -> str:
+    """Write numbers with the digits that show the smallest sigma."""
+    least = float(min(sigma[sigma > 0], default=0.01))
+    digits = int(np.clip(-np.floor(np.log10(least)), 2, 7))
+    return f"{_three(numbers, digits)} ± {_three(sigma, digits)}"
+
+
+def _three(numbers: np.ndarray, digits: int) -> str:
     return "(" + ", ".join(f"{number:.{digits}f}" for number in numbers + 0.0) + ")"
