@@ -80,7 +80,8 @@ class Reach:
 def _medians(ranges: Scalars, signals: Scalars) -> tuple[Scalars, Scalars]:
     """Give the middle of bins of equal width that hold enough points, and their median signal."""
     # A few false points far away must not make one bin of all others.
-    edges = np.linspace(*np.percentile(ranges, [_STRAY, 100 - _STRAY]), _BINS + 1)
+    low, high = np.percentile(ranges, [_STRAY, 100 - _STRAY])
+    edges = np.linspace(low, high, _BINS + 1)
     which = np.clip(np.searchsorted(edges, ranges, side="right") - 1, 0, _BINS - 1)
     order = np.argsort(which, kind="stable")
     groups = np.split(order, np.cumsum(np.bincount(which, minlength=_BINS))[:-1])
