@@ -21,6 +21,7 @@ from ..types.cloud import PointCloud
 from ..types.pose import Pose
 from ..types.trajectory import Trajectory
 from .alignment_words import alignment_as_json, describe_alignment
+from .matched import share_matches
 from .merged import is_merged, load_moments, load_way
 from .progress import Progress, silent
 
@@ -30,6 +31,10 @@ _GAP = 1000
 """Frame numbers between two passes, so that none of their profiles count as neighbours."""
 _LAST_FRAME = 2**31 - 1
 """The highest number of a frame that a cloud holds."""
+
+Laid = tuple[Alignment | None, Sequence[float]]
+"""How a pass was aligned, and which share of its matches lies in each of the passes."""
+_STAYS: Laid = (None, ())
 
 
 @dataclass(frozen=True)
@@ -104,7 +109,7 @@ def merge_passes(
 
     Returns:
         points, and passes: for each its path, frames, points that were left out since they are
-        not finite, correction, and words for it.
+        not finite, correction, share of its matches in each pass it was laid on, and words for it.
 
     Raises:
         InputError: out is no new folder, a pass is empty or numbers its frames too high, or the
@@ -124,8 +129,8 @@ def merge_passes(
         raise InputError(f"{out} is one of the passes; give a new folder with --out.")
     since = time.monotonic()
     counts, left_out = zip(*(one.count() for one in passes), strict=True)
-    aligned = _align_all(passes, counts, reach, progress) if align else [None] * len(passes)
-    told, moved = _place(passes, aligned, left_out)
+    laid = _align_all(passes, counts, reach, progress) if align else [_STAYS] * len(passes)
+    told, moved = _place(passes, laid, left_out)
     blocks = iter(moved if voxel is None else thin_clouds(moved, voxel))
     # What is refused is refused by now, before anything is written.
     blocks = chain([next(blocks)], blocks)
@@ -202,10 +207,10 @@ class _Moved:
 
 
 def _place(
-    passes: Sequence[Pass], aligned: Sequence[Alignment | None], left_out: Sequence[int]
+    passes: Sequence[Pass], laid: Sequence[Laid], left_out: Sequence[int]
 ) -> tuple[list[dict[str, Any]], _Moved]:
     told, first_frames, ranges, following = [], [], [], 0
-    for one, alignment, broken in zip(passes, aligned, left_out, strict=True):
+    for one, (alignment, shares), broken in zip(passes, laid, left_out, strict=True):
         frames = [(int(b.frame.min()), int(b.frame.max())) for b in one if len(b)]
         low, high = min(low for low, _ in frames), max(high for _, high in frames)
         if following + high - low > _LAST_FRAME:
@@ -222,10 +227,11 @@ def _place(
                 "left_out": broken,
                 "words": describe_alignment(alignment) + _say_left_out(broken),
                 "alignment": alignment_as_json(alignment),
+                "laid_on": list(shares),
             }
         )
         following += high - low + _GAP
-    poses = [Pose.identity() if a is None else a.target_from_source for a in aligned]
+    poses = [Pose.identity() if a is None else a.target_from_source for a, _ in laid]
     return told, _Moved(passes, poses, first_frames, ranges)
 
 
@@ -235,10 +241,11 @@ def _say_left_out(count: int) -> str:
 
 def _align_all(
     passes: Sequence[Pass], counts: Sequence[int], reach: float | None, progress: Progress
-) -> list[Alignment | None]:
+) -> list[Laid]:
     """Lay each pass on what is in place; one that does not overlap yet waits for others."""
-    found: dict[int, Alignment | None] = {0: None}
+    found = {0: _STAYS}
     placed = _sample(passes[0], counts[0])
+    owner = np.zeros(len(placed), np.int64)
     waiting = list(range(1, len(passes)))
     progress("align", 1, len(passes))
     while waiting:
@@ -256,14 +263,15 @@ def _align_all(
                     f"{_size(source):.3g} m, and they {_size(placed):.3g} m. Give clouds of "
                     f"surfaces in metres. ({error})"
                 ) from error
-            found[number] = alignment
             pose = alignment.target_from_source
             source = replace(
                 source,
                 points=pose @ source.points,
                 normals=(source.normals @ pose.rotation.T).astype(np.float32),
             )
+            found[number] = (alignment, share_matches(source, placed, owner, alignment.overlap))
             placed = PointCloud.concatenate([placed, source])
+            owner = np.append(owner, np.full(len(source), number))
             waiting.remove(number)
             progress("align", len(found), len(passes))
             break
