@@ -17,6 +17,7 @@ from murkscan.measure import (
     measure_sphere,
     measure_step,
 )
+from murkscan.types.cloud import PointCloud
 from murkscan.types.plane import span_plane
 
 from .. import scans
@@ -177,6 +178,30 @@ def test_points_of_other_programs_are_numbered_by_place_and_get_normals():
     assert found.value == pytest.approx(known.value)
     # Independent noise: both tell its effect to a part that depends on how they are numbered.
     assert 0.5 < found.half_width / known.half_width < 2
+
+
+def test_of_a_scan_and_points_of_another_program_only_these_are_numbered_by_place():
+    scan = scans.scan_cloud(scans.plane, spacing=2e-3, noise=1e-4)
+    other = scans.scan_cloud(scans.plane, spacing=2e-3, noise=1e-4)
+    other = replace(
+        other,
+        frame=np.full_like(other.frame, 2000),
+        scan_line=np.zeros_like(other.scan_line),
+        normals=np.zeros_like(other.normals),
+    )
+    both = Sample.from_cloud(PointCloud.concatenate([scan, other]))
+    alone, count = Sample.from_cloud(scan), len(scan)
+    np.testing.assert_array_equal(both.profile[:count], alone.profile)
+    np.testing.assert_array_equal(both.line[:count], alone.line)
+    np.testing.assert_array_equal(both.cloud.normals[:count], scan.normals)
+    # A square holds about one point, and no square a neighbour of the scan's profiles.
+    cells = np.unique(np.stack([both.profile[count:], both.line[count:]]), axis=1)
+    assert cells.shape[1] > 0.3 * count
+    assert both.profile[count:].min() >= alone.profile.max() + 1000
+    # The wall is flat, and the camera before it: a plane through 30 points good to 0.05 rad.
+    truth = np.array([0.3, -0.2, -1.0]) / np.linalg.norm([0.3, -0.2, -1.0])
+    assert np.median(both.cloud.normals[count:] @ truth) > np.cos(0.05)
+    assert (both.cloud.normals[count:] @ truth).min() > 0.5
 
 
 @pytest.mark.parametrize("profiles", [1, 2])

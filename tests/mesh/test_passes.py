@@ -8,13 +8,13 @@ import pytest
 from murkscan.errors import InputError
 from murkscan.geometry.overlap import has_another_sheet
 from murkscan.measure import Sample, measure_area, measure_volume
-from murkscan.mesh import GridMesh
+from murkscan.mesh import GridMesh, Poisson
 from murkscan.types.cloud import PointCloud
 from murkscan.types.mesh import Mesh
 from murkscan.types.plane import Plane
 
 from ..scans import cylinder, plane, scan_cloud
-from .test_meshers import MESHERS
+from .test_meshers import MESHERS, WITH_OPEN3D, unnumbered
 
 
 def passes(surface, *, beside=0.06, off=2e-4):
@@ -43,6 +43,32 @@ def test_where_passes_overlap_there_is_one_sheet(mesher, surface):
     assert has_another_sheet(mesh, all_of(mesh)).mean() < 0.02
     one = mesher.mesh(both[0])
     assert area(mesh) > 1.2 * area(one)
+
+
+@WITH_OPEN3D
+@pytest.mark.parametrize("over", [False, True])
+def test_poisson_joins_a_scan_and_the_points_of_another_program(over):
+    first, other = passes(plane)
+    other = replace(unnumbered(other, with_normals=False), frame=other.frame * 0 + 1200)
+    both = [first, other]
+    if over:
+        # From the other side of the world, where the smallest z is the wall's back.
+        turn = np.diag([1.0, -1.0, -1.0]).astype(np.float32)
+        both = [replace(c, points=c.points @ turn, normals=c.normals @ turn) for c in both]
+    mesher = Poisson(depth=6)
+    mesh = mesher.mesh_passes(both)
+    assert has_another_sheet(mesh, all_of(mesh)).mean() < 0.02
+    # The second pass begins 60 mm after the first, of 119 mm, and the rims are uneven.
+    assert area(mesh) > 1.4 * area(mesher.mesh(both[0]))
+    a, b, c = (mesh.vertices[corner] for corner in mesh.faces.T)
+    towards = np.cross(b - a, c - a)[:, 2]
+    assert np.mean(towards > 0 if over else towards < 0) > 0.99
+
+
+def test_the_grid_mesh_leaves_no_points_of_another_program_out_in_silence():
+    first, other = passes(plane)
+    with pytest.raises(InputError, match="--mesher poisson"):
+        GridMesh().mesh(PointCloud.concatenate([first, unnumbered(other)]))
 
 
 def test_the_area_of_two_passes_is_that_of_what_they_saw_together():

@@ -94,12 +94,23 @@ class ScanGrid:
         return cell, cell[order], order
 
     @cached_property
-    def is_numbered(self) -> bool:
-        """Whether the points say where in the grid they are; those of other programs do not.
+    def numbered(self) -> Mask:
+        """Which points say where in the grid they are; those of other programs do not.
 
-        Of a scan no cell has more points than a stripe has branches.
+        A scan's profile has in no cell more points than a stripe has branches. Each profile is
+        judged by itself: passes of a merged cloud may differ.
         """
-        return len(self.cloud) <= _MAX_BRANCHES * len(np.unique(self._cells[1]))
+        _, which = np.unique(self.profile, return_inverse=True)
+        line = self.cloud.scan_line.astype(np.int64)
+        width = int(np.ptp(line)) + 1 if len(line) else 1
+        _, first = np.unique(which * width + line, return_index=True)
+        num_cells = np.bincount(which[first])
+        return (np.bincount(which) <= _MAX_BRANCHES * num_cells)[which]
+
+    @property
+    def is_numbered(self) -> bool:
+        """Whether all points say where in the grid they are."""
+        return bool(self.numbered.all())
 
     @cached_property
     def usual_along(self) -> float:

@@ -1,5 +1,7 @@
 """Normals of points of which nothing is known but their places."""
 
+from dataclasses import replace
+
 import numpy as np
 from jaxtyping import Float, Int
 from scipy import sparse
@@ -7,7 +9,8 @@ from scipy.sparse.csgraph import breadth_first_order, connected_components, mini
 from scipy.spatial import KDTree
 
 from ..errors import NotEnoughData
-from ..types.arrays import Directions, Normals, Points
+from ..types.arrays import Directions, Mask, Normals, Points, Scalars
+from ..types.cloud import PointCloud
 
 _NEIGHBOURS = 30
 """Points around a place that make its plane: where a scanner's lines are five times as far apart as
@@ -35,13 +38,52 @@ def estimate_point_normals(points: Points) -> Normals:
     References:
         Hoppe et al., Surface reconstruction from unorganized points, SIGGRAPH 1992, section 3.
     """
+    return _estimate(points)[0].astype(np.float32)
+
+
+def complete_normals(cloud: PointCloud, unnumbered: Mask) -> PointCloud:
+    """Give normals to points of other programs, in passes that bring none for half of theirs.
+
+    Each piece of them is turned as the known normals nearest to it are.
+
+    Args:
+        cloud: Points of which some may have normals.
+        unnumbered: Those that another program made; the others stay as they are.
+
+    Raises:
+        NotEnoughData: These passes have fewer than four points.
+    """
+    has_normal = cloud.normals.any(axis=1)
+    _, which = np.unique(cloud.frame, return_inverse=True)
+    total = np.bincount(which, unnumbered)
+    brought = np.bincount(which, unnumbered & has_normal)
+    bare = unnumbered & (brought < 0.5 * total)[which]
+    if not bare.any():
+        return cloud
+    found, piece, reach = _estimate(cloud.points[bare])
+    known = cloud[has_normal & ~bare]
+    if len(known):
+        away, nearest = KDTree(known.points).query(cloud.points[bare])
+        dots = np.einsum("ij,ij->i", found, known.normals[nearest])
+        # Within the disc that made the plane all count alike, farther away less and less.
+        votes = np.bincount(piece, dots / (away**2 + reach**2 + 1e-300))
+        found = found * np.where(votes < 0, -1.0, 1.0)[piece][:, None]
+    normals = cloud.normals.copy()
+    normals[bare] = found
+    return replace(cloud, normals=normals)
+
+
+def _estimate(points: Points) -> tuple[Directions, Int[np.ndarray, " n"], Scalars]:
+    """Give each point's normal, its piece, and how far its neighbours are away [m]."""
     if len(points) < 4:
         raise NotEnoughData(f"Normals need at least 4 points, got {len(points)}.")
-    near = np.asarray(KDTree(points).query(points, k=min(_NEIGHBOURS, len(points)))[1])
+    away, near = KDTree(points).query(points, k=min(_NEIGHBOURS, len(points)))
+    near = np.asarray(near)
     normals = np.concatenate(
         [_fit_planes(points[near[at : at + _BLOCK]]) for at in range(0, len(points), _BLOCK)]
     )
-    return (normals * _turn_alike(points, normals, near)[:, None]).astype(np.float32)
+    sign, piece = _turn_alike(points, normals, near)
+    return normals * sign[:, None], piece, np.asarray(away)[:, -1]
 
 
 def _fit_planes(around: Float[np.ndarray, "m k 3"]) -> Directions:
@@ -50,8 +92,10 @@ def _fit_planes(around: Float[np.ndarray, "m k 3"]) -> Directions:
     return np.linalg.eigh(np.einsum("mki,mkj->mij", off, off))[1][:, :, 0]
 
 
-def _turn_alike(points: Points, normals: Directions, near: Near) -> Float[np.ndarray, " n"]:
-    """Give the sign of each normal: along the tree on which neighbours differ least."""
+def _turn_alike(
+    points: Points, normals: Directions, near: Near
+) -> tuple[Float[np.ndarray, " n"], Int[np.ndarray, " n"]]:
+    """Give each normal's sign, along the tree on which neighbours differ least, and its piece."""
     there = near[:, 1::_STRIDE]
     here = np.repeat(np.arange(len(points)), there.shape[1])
     alike = np.abs(np.einsum("ij,ij->i", normals[here], normals[there.ravel()]))
@@ -63,7 +107,7 @@ def _turn_alike(points: Points, normals: Directions, near: Near) -> Float[np.nda
     by_depth = np.argsort(points[:, 2], kind="stable")
     _, first = np.unique(piece[by_depth], return_index=True)
     assert len(first) == count
-    return _follow(tree, by_depth[first], normals)
+    return _follow(tree, by_depth[first], normals), piece
 
 
 def _follow(

@@ -8,10 +8,13 @@ from jaxtyping import Float
 
 from ..errors import NotEnoughData
 from ..geometry.grid import ScanGrid
-from ..geometry.point_normals import estimate_point_normals
+from ..geometry.point_normals import complete_normals
 from ..geometry.stripe_blur import Sight
 from ..types.arrays import Indices, Mask, Points
 from ..types.cloud import PointCloud
+
+_APART = 1000
+"""Numbers between the last profile and the first row of places: they are no neighbours."""
 
 Shifts = Float[np.ndarray, "n 3 modes"]
 """How far points move with each independent error of the rig, at one standard deviation [m]."""
@@ -63,9 +66,8 @@ class Sample:
         grid = ScanGrid.from_cloud(cloud)
         if grid.is_numbered:
             return cls(cloud, grid.profile, grid.line, sight, shifts)
-        if not cloud.normals.any():
-            cloud = replace(cloud, normals=estimate_point_normals(cloud.points))
-        return cls(cloud, *_number_places(cloud.points), sight, shifts)
+        cloud = complete_normals(cloud, ~grid.numbered)
+        return cls(cloud, *_number_some(cloud, grid.numbered), sight, shifts)
 
     def __len__(self) -> int:
         """Count the points."""
@@ -82,6 +84,17 @@ class Sample:
             sight=None if self.sight is None else self.sight[which],
             shifts=None if shifts is None else lambda some: shifts(numbers[some]),
         )
+
+
+def _number_some(cloud: PointCloud, numbered: Mask) -> tuple[Indices, Indices]:
+    """Give profile and scan line of the points that know them, and of the others their places."""
+    known = ScanGrid.from_cloud(cloud[numbered])
+    profile, line = np.zeros(len(cloud), np.int64), np.zeros(len(cloud), np.int64)
+    profile[numbered], line[numbered] = known.profile, known.line
+    row, column = _number_places(cloud.points[~numbered])
+    profile[~numbered] = row + known.profile.max(initial=-_APART) + _APART
+    line[~numbered] = column + known.line.min(initial=0)
+    return profile, line
 
 
 def _number_places(points: Points) -> tuple[Indices, Indices]:

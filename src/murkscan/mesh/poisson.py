@@ -1,7 +1,8 @@
 """Poisson surface reconstruction: closed over noise and small holes, cut where nothing was seen."""
 
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
@@ -9,7 +10,7 @@ from scipy.spatial import cKDTree
 
 from ..errors import Degenerate, InputError, MissingDependency
 from ..geometry.grid import ScanGrid
-from ..geometry.point_normals import estimate_point_normals
+from ..geometry.point_normals import complete_normals
 from ..types.arrays import Points
 from ..types.cloud import PointCloud
 from ..types.mesh import Mesh
@@ -72,18 +73,18 @@ class Poisson(AbstractMesher):
         open3d = _import_open3d()
         grid = ScanGrid.from_cloud(cloud)
         if len(cloud) >= _FEWEST and not grid.is_numbered:
-            _require_width(cloud.points)
-            if not cloud.normals.any():
-                cloud = replace(cloud, normals=estimate_point_normals(cloud.points))
+            _require_width(cloud.points[~grid.numbered])
+            cloud = complete_normals(cloud, ~grid.numbered)
         with_normal = cloud[np.any(cloud.normals != 0, axis=1)]
         if len(with_normal) < _FEWEST:
             return empty_mesh()
-        spacing, reach = _spacings(grid)
-        if spacing == 0:
+        seen = _Seen.from_grid(grid)
+        if not seen:
             return empty_mesh()
+        spacing = min(one.spacing for one in seen)
         depth = _depth_for(with_normal.points, spacing) if self.depth is None else self.depth
         mesh = _reconstruct(open3d, with_normal, depth)
-        return _trim(_face_normals(mesh, with_normal), cloud, reach)
+        return _trim(_face_normals(mesh, with_normal), seen)
 
 
 def _require_width(points: Points) -> None:
@@ -97,18 +98,30 @@ def _require_width(points: Points) -> None:
         )
 
 
-def _spacings(grid: ScanGrid) -> tuple[float, float]:
-    """Give the usual distance between points, and how far a surface reaches from them [m].
+@dataclass(frozen=True, eq=False)
+class _Seen:
+    """Points that know profiles, or those that do not, and the surface that they show."""
 
-    Both 0 where there are no two profiles.
-    """
-    if grid.is_numbered:
-        along, across = grid.usual_along, grid.usual_across
-        return math.sqrt(along * across), _SUPPORT * max(along, across) if across else 0.0
-    points = grid.cloud.points
-    some = points[:: max(len(points) // _PROBED, 1)]
-    disc = float(np.median(cKDTree(points).query(some, k=[min(_NEIGHBOURS, len(points))])[0]))
-    return disc * math.sqrt(math.pi / _NEIGHBOURS), disc
+    points: Points
+    spacing: float
+    """Usual distance between them [m]."""
+    reach: float
+    """How far a surface reaches from them [m]."""
+
+    @classmethod
+    def from_grid(cls, grid: ScanGrid) -> list["_Seen"]:
+        """Tell both kinds apart; a single profile shows no surface."""
+        seen, scanned, others = [], grid.cloud[grid.numbered], grid.cloud.points[~grid.numbered]
+        own = ScanGrid.from_cloud(scanned)
+        if across := own.usual_across:
+            reach = _SUPPORT * max(own.usual_along, across)
+            seen.append(cls(scanned.points, math.sqrt(own.usual_along * across), reach))
+        if len(others):
+            some = others[:: max(len(others) // _PROBED, 1)]
+            radii = cKDTree(others).query(some, k=[min(_NEIGHBOURS, len(others))])[0]
+            disc = float(np.median(radii))
+            seen.append(cls(others, disc * math.sqrt(math.pi / _NEIGHBOURS), disc))
+        return [one for one in seen if one.spacing > 0]
 
 
 def _depth_for(points: Points, spacing: float) -> int:
@@ -148,8 +161,8 @@ def _face_normals(mesh: Mesh, cloud: PointCloud) -> Mesh:
     return mesh if agree.sum() >= 0 else Mesh(mesh.vertices, mesh.faces[:, ::-1])
 
 
-def _trim(mesh: Mesh, cloud: PointCloud, reach: float) -> Mesh:
-    distance, _ = cKDTree(cloud.points).query(mesh.vertices)
-    near = np.asarray(distance) <= reach
-    seen = near[mesh.faces].all(axis=1)
-    return drop_unused_vertices(Mesh(mesh.vertices, mesh.faces[seen]))
+def _trim(mesh: Mesh, seen: Sequence[_Seen]) -> Mesh:
+    near = np.zeros(len(mesh.vertices), bool)
+    for one in seen:
+        near |= np.asarray(cKDTree(one.points).query(mesh.vertices)[0]) <= one.reach
+    return drop_unused_vertices(Mesh(mesh.vertices, mesh.faces[near[mesh.faces].all(axis=1)]))
