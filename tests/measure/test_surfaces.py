@@ -7,6 +7,7 @@ import pytest
 
 from murkscan.errors import InputError, NotEnoughData
 from murkscan.measure import (
+    Ball,
     Box,
     Sample,
     cut_out,
@@ -134,3 +135,20 @@ def test_an_empty_selection_of_a_surface_is_refused(plane_scan):
         cut_out(plane_scan[1], Box((5.0, 5.0, 5.0), (6.0, 6.0, 6.0)))
     with pytest.raises(InputError, match="first corner"):
         Box((1.0, 0.0, 0.0), (0.0, 1.0, 1.0))
+
+
+@pytest.mark.parametrize(
+    ("part", "area"),
+    [
+        (Ball((0.1, 0.1, 0.0), 0.05), np.pi * 0.05**2),
+        (Box((0.1, 0.2, -1.0), (0.13, 0.9, 1.0)), 0.03 * 0.7),
+    ],
+)
+def test_a_part_between_the_corners_of_large_triangles_is_cut_out_of_them(part, area):
+    corners = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+    wall = Mesh(corners, np.array([[0, 1, 2], [0, 2, 3]]))
+    cut = cut_out(wall, part)
+    sides = [cut.vertices[cut.faces[:, k]] - cut.vertices[cut.faces[:, 0]] for k in (1, 2)]
+    found = np.linalg.norm(np.cross(*sides), axis=1).sum() / 2
+    # A ball's border is followed to an eighth of a quarter of its radius.
+    assert found == pytest.approx(area, rel=0.01)

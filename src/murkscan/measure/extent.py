@@ -6,6 +6,7 @@ import numpy as np
 import trimesh
 
 from ..errors import NotEnoughData
+from ..geometry.clip import clip_mesh
 from ..geometry.correlated_errors import variance_of_sum
 from ..types.arrays import Scalars, Vector
 from ..types.measurement import Measurement
@@ -27,8 +28,12 @@ from .trust import Trust
 
 _TILT = 0.05
 """Standard deviation of a cloud's normals [rad], to which they are smoothed."""
-_HALVINGS = 3
-"""How often the sides of triangles on the border of a selection are halved."""
+_HALVINGS, _MOST = 3, 20
+"""How often the sides of triangles on the border of a selection are halved, and those of huge ones
+there at the most."""
+_FINE, _FINEST = 4.0, 500.0
+"""Shortest side of a part of space over those of triangles that cannot hold it between their
+corners; its diagonal over those of the finest."""
 
 
 def cut_out(mesh: Mesh, selection: Selection | None) -> Mesh:
@@ -42,6 +47,7 @@ def cut_out(mesh: Mesh, selection: Selection | None) -> Mesh:
     """
     if selection is None:
         return mesh
+    mesh = _divide_large(mesh, selection)
     corners = selection.contains(mesh.vertices)[mesh.faces]
     inside, cut = corners.all(axis=1), corners.any(axis=1) & ~corners.all(axis=1)
     vertices, small = mesh.vertices, mesh.faces[cut]
@@ -54,6 +60,21 @@ def cut_out(mesh: Mesh, selection: Selection | None) -> Mesh:
         )
     used, faces = np.unique(np.concatenate([mesh.faces[inside], small]), return_inverse=True)
     return Mesh(vertices[used], faces.reshape(-1, 3))
+
+
+def _divide_large(mesh: Mesh, selection: Selection) -> Mesh:
+    """Divide triangles near a part of space that could hold it between their corners."""
+    low, high = selection.bounds
+    size = high - low
+    longest = max(float(size.min()) / _FINE, float(np.linalg.norm(size)) / _FINEST)
+    corners = mesh.vertices[mesh.faces]
+    near = ((corners.min(axis=1) <= high) & (corners.max(axis=1) >= low)).all(axis=1)
+    sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+    if not (near & (sides > longest)).any():
+        return mesh
+    part = clip_mesh(Mesh(mesh.vertices, mesh.faces[near]), low, high)
+    vertices, faces = trimesh.remesh.subdivide_to_size(part.vertices, part.faces, longest, _MOST)
+    return Mesh(np.asarray(vertices), np.asarray(faces, np.int32))
 
 
 def measure_area(mesh: Mesh, sample: Sample) -> Measurement:

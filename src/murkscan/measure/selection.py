@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import InputError
-from ..types.arrays import Mask, Points
+from ..types.arrays import Mask, Points, Vector
 
 
 @dataclass(frozen=True)
@@ -25,6 +25,11 @@ class Ball:
     def contains(self, points: Points) -> Mask:
         """Tell which points lie inside."""
         return np.linalg.norm(points - np.array(self.centre), axis=1) <= self.radius
+
+    @property
+    def bounds(self) -> tuple[Vector, Vector]:
+        """Its lowest and highest coordinates [m]."""
+        return np.array(self.centre) - self.radius, np.array(self.centre) + self.radius
 
 
 @dataclass(frozen=True)
@@ -47,6 +52,11 @@ class Box:
     def contains(self, points: Points) -> Mask:
         """Tell which points lie inside."""
         return np.all((points >= self.low) & (points <= self.high), axis=1)
+
+    @property
+    def bounds(self) -> tuple[Vector, Vector]:
+        """Its lowest and highest coordinates [m]."""
+        return np.array(self.low), np.array(self.high)
 
 
 Selection = Ball | Box
