@@ -44,6 +44,11 @@ class Pose:
             return Pose(self.rotation @ other.rotation, moved)
         return other @ self.rotation.T + self.translation
 
+    def turn(self, attitudes: Quaternions) -> Quaternions:
+        """Give attitudes in a that are given in b: a_from_c of b_from_c, w x y z, one a row."""
+        own = Rotation.from_matrix(self.rotation)
+        return (own * Rotation.from_quat(attitudes, scalar_first=True)).as_quat(scalar_first=True)
+
     def inverse(self) -> "Pose":
         """Swap the frames: b_from_a of a_from_b."""
         return Pose(self.rotation.T, -self.rotation.T @ self.translation)

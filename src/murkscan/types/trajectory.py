@@ -74,7 +74,5 @@ class Trajectory:
 
     def carry(self, target_from_world: Pose) -> "Trajectory":
         """Give target_from_camera where this is world_from_camera."""
-        rotations = Rotation.from_quat(self.quaternions, scalar_first=True)
-        turned = Rotation.from_matrix(target_from_world.rotation) * rotations
         positions = target_from_world @ self.positions
-        return Trajectory(self.times, positions, turned.as_quat(scalar_first=True))
+        return Trajectory(self.times, positions, target_from_world.turn(self.quaternions))

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 from scipy.spatial import KDTree
-from scipy.spatial.transform import Rotation
 
 from ..errors import InputError
 from ..types.arrays import Directions, Faces, Indices, Points, Scalars
@@ -106,18 +105,14 @@ class Model:
             target_from_world: Where it goes.
             views: The views of the other one, in its world.
         """
-        turn = target_from_world.rotation
-        attitudes = self.attitudes
-        if len(attitudes):
-            seen = Rotation.from_quat(attitudes, scalar_first=True)
-            attitudes = (Rotation.from_matrix(turn) * seen).as_quat(scalar_first=True)
+        known = len(self.attitudes) > 0
         return replace(
             self,
             vertices=target_from_world @ self.vertices,
             surface=target_from_world @ self.surface,
-            normals=self.normals @ turn.T,
+            normals=self.normals @ target_from_world.rotation.T,
             path=target_from_world @ self.path,
-            attitudes=attitudes,
+            attitudes=target_from_world.turn(self.attitudes) if known else self.attitudes,
             views=views,
         )
 
