@@ -15,6 +15,8 @@ from murkscan.survey.calibrate_laser import FanKnowledge, calibrate_laser_from_p
 from murkscan.types.laser import Fan, Laser
 from murkscan.types.plane import Plane
 from murkscan.types.port import FlatPort
+from murkscan.types.pose import Pose
+from murkscan.types.rig_covariance import RigCovariance
 
 from .test_calibrate_port import BOARD, LENS, PORT, RIG, hold, render
 
@@ -105,6 +107,27 @@ def test_done_again_it_says_the_same(photos, sheet, tmp_path):
         equivalent_plane(first.lasers[0], index_of(first)).normal,
         atol=1e-6,
     )
+
+
+@pytest.mark.parametrize("is_known", [True, False], ids=["calibrated", "by hand"])
+def test_a_rig_on_a_vehicle_gets_a_laser_too(photos, sheet, tmp_path, is_known):
+    path = save(tmp_path / "rig.toml", sheet)
+    rig = replace(load_rig(path), vehicle_from_camera=Pose(np.eye(3), np.array([0.3, 0.0, 0.1])))
+    if is_known:
+        names = [f"mount.{part}[{i}]" for part in ("translation", "turn") for i in range(3)]
+        both = RigCovariance(
+            (*rig.covariance.names, *names),
+            np.diag([*np.diag(rig.covariance.matrix), *[1e-6] * 3, *[1e-8] * 3]),
+        )
+        rig = replace(rig, covariance=both)
+    save_rig(path, rig)
+    fan = FanKnowledge() if isinstance(sheet, Fan) else None
+    calibrate_laser_from_photos(photos, BOARD, path, fan=fan)
+    found = load_rig(path)
+    np.testing.assert_allclose(found.vehicle_from_camera.translation, [0.3, 0.0, 0.1], atol=1e-9)
+    # What nothing was photographed of stays as it was known.
+    stated = found.covariance.select(["mount.translation[0]", "mount.turn[2]"]).sigma
+    np.testing.assert_allclose(stated, [1e-3, 1e-4] if is_known else [0, 0], rtol=1e-6)
 
 
 def test_a_fan_must_stand_in_the_rig_file_first(photos, tmp_path):

@@ -34,7 +34,7 @@ _CHANCE = 4.0
 """Deviations of a chi-square number up to which it is chance."""
 _TOGETHER = 0.9
 """Correlation from which two parameters are told to go together."""
-_ATTRIBUTES = {"laser": "lasers", "layer": "layers"}
+_ATTRIBUTES = {"laser": "lasers", "layer": "layers", "mount": "vehicle_from_camera"}
 """Where a value has another name than the rig file's table."""
 _SHOWN = {"m": (1e3, "mm"), "rad": (180 / np.pi, "degrees"), "px": (1.0, "px"), "": (1.0, "")}
 """Factor and unit in which people read a parameter."""

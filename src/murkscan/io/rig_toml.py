@@ -104,6 +104,9 @@ def save_calibration(
         _put_laser(document, laser, number, path)
     if not keep_water and rig.water is not None:
         document["water"] = water_table(rig.water)
+    if rig.vehicle_from_camera is not None and "mount.turn[0]" in rig.covariance.names:
+        # A mount was found with this camera, so it moves along where the camera does.
+        document.setdefault("mount", tomlkit.table()).update(mount_table(rig.vehicle_from_camera))
     _put_covariance(document, rig.covariance)
     table = document["calibration"]
     for word in step[:-1]:

@@ -36,6 +36,8 @@ def tables_before(tables: dict[str, Any], step: Sequence[str], *, name: str) -> 
     restored["camera"] = copy.deepcopy(before["camera"])
     if port is not None:
         restored["camera"]["port"] = port
+    if "mount" in before and any(word.startswith("mount.") for word in covariance.names):
+        restored["mount"] = copy.deepcopy(before["mount"])
     for number, laser in before.get("laser", {}).items():
         is_as_left = any(word.startswith(f"laser[{number}]") for word in covariance.names)
         if is_as_left and int(number) < len(restored.get("laser", [])):
@@ -65,4 +67,6 @@ def snapshot(tables: dict[str, Any], *, laser: int | None = None) -> dict[str, A
     }
     if lasers:
         kept["laser"] = lasers
+    if any(name.startswith("mount.") for name in known):
+        kept["mount"] = tables["mount"]
     return copy.deepcopy(kept)
