@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-DATA = Path(__file__).resolve().parents[2] / "shared" / "data"
+SHARED = Path(__file__).resolve().parents[2] / "shared"
+DATA, FAULTS = SHARED / "data", SHARED / "faults"
 
 
 @pytest.fixture(scope="session")
@@ -18,6 +19,18 @@ def data() -> Callable[[str], Path]:
         return DATA / name
 
     return folder
+
+
+@pytest.fixture(scope="session")
+def fault() -> Callable[[str], Path]:
+    """Give an input that users have by its name; skip the test where it is absent."""
+
+    def file(name: str) -> Path:
+        if not (FAULTS / name).exists():
+            pytest.skip(f"the input {name} is not beside this checkout")
+        return FAULTS / name
+
+    return file
 
 
 @pytest.fixture(scope="session")

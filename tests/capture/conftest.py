@@ -27,8 +27,11 @@ def write_video() -> Callable[..., Path]:
         height: int | None = None,
         times: Sequence[int] | None = None,
         options: dict[str, str] | None = None,
+        title: str | None = None,
     ) -> Path:
         with av.open(str(path), "w") as container:
+            if title:
+                container.metadata["title"] = title
             stream = container.add_stream(codec, rate=25)
             stream.height, stream.width = height or pictures[0].shape[0], pictures[0].shape[1]
             stream.pix_fmt = kept

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from murkscan.capture import is_camera, open_recording, record_images
-from murkscan.capture.decode import Picture, decode_pictures, open_video
+from murkscan.capture.container import open_video
+from murkscan.capture.decode import Picture, decode_pictures
 from murkscan.errors import DeviceError, InputError
 
 RANDOM = np.random.default_rng(11)

@@ -234,8 +234,8 @@ def test_an_e57_file_that_does_not_hold_the_points_it_declares_is_refused(tmp_pa
         ("a.ply", b"plastic", "is not a PLY file"),
         ("a.las", b"LASF", "is not a LAS file"),
         ("a.laz", b"", "is not a LAS file"),
-        ("a.e57", b"ASTM-E57" + bytes(40), "cannot be read as E57"),
-        ("a.e57", b"", "cannot be read as E57: it is damaged"),
+        ("a.e57", b"ASTM-E57" + bytes(40), "declares 0 bytes of XML"),
+        ("a.e57", b"", "is not an E57 file"),
         ("a.las", b"LASF" + bytes(400), "declares a header"),
     ],
 )  # fmt: skip
@@ -295,6 +295,86 @@ def test_no_bytes_are_a_fault_of_ours(tmp_path, suffix, data):
         load_cloud_file(path)
     except FormatError as refusal:
         assert str(path) in str(refusal)  # noqa: PT017  both outcomes are right
+
+
+IMPOSSIBLE = [
+    *(("points", value) for value in (np.nan, np.inf, 1e300, -1e12)),
+    *(("normals", value) for value in (np.nan, -np.inf)),
+    *((column, value) for column in ("sigma", "sigma_common") for value in (np.nan, -1e-6)),
+]
+
+
+@pytest.mark.parametrize(("column", "value"), IMPOSSIBLE)
+def test_points_that_cannot_be_are_left_out_with_a_word(tmp_path, column, value):
+    cloud = some_cloud(10)
+    getattr(cloud, column)[3] = value
+    save(tmp_path / "cloud.ply", cloud)
+    with pytest.warns(UserWarning, match=r"cloud.ply: 1 of 10 points were left out"):
+        back = load_cloud_file(tmp_path / "cloud.ply")
+    np.testing.assert_array_equal(back.frame, np.delete(cloud.frame, 3))
+
+
+@pytest.mark.parametrize(
+    ("name", "says"),
+    [("entities.e57", "has a document type"), ("point_size_zero.las", "it is damaged")],
+)
+def test_files_that_users_were_sent_are_refused_in_one_sentence(fault, name, says):
+    path = fault(f"clouds/{name}")
+    with pytest.raises(FormatError, match=says) as refusal:
+        load_cloud_file(path)
+    assert str(path) in str(refusal.value)
+
+
+XML = {
+    "a document type": (b"<e57Root ", b"<!DOCTYPE e [<!ENTITY a SYSTEM 'file:///etc/hostname'>]>"),
+    "a document type in capitals": (b"<e57Root ", b"<!doctype e>"),
+    "a schema": (b' type="Structure"', b' x:schemaLocation="http://127.0.0.1/"'),
+    "another encoding": (b'encoding="UTF-8"', b'encoding="UTF-7"'),
+}
+
+
+@pytest.mark.parametrize("kind", XML)
+def test_an_e57_file_that_makes_a_parser_read_more_is_refused(tmp_path, kind):
+    path = tmp_path / "cloud.e57"
+    write_e57_xml(path, *XML[kind])
+    with pytest.raises(FormatError, match=r"is refused: its XML|is no text in UTF-8"):
+        load_cloud_file(path)
+
+
+def test_an_e57_file_with_a_node_of_the_wrong_kind_is_refused(tmp_path):
+    path = tmp_path / "cloud.e57"
+    write_e57_xml(path, b'<points type="CompressedVector"', b'<points type="String"', replace=True)
+    with pytest.raises(FormatError, match="cannot be read as E57"):
+        load_cloud_file(path)
+
+
+def write_e57_xml(path, where, what, *, replace=False):
+    """Write a small E57 file whose XML is changed, with checksums that fit: pages of 1024."""
+    save(path, some_cloud(20))
+    data = path.read_bytes()
+    place, length = struct.unpack_from("<QQ", data, 24)
+    stripped = b"".join(data[k : k + 1020] for k in range(0, len(data), 1024))
+    start = place // 1024 * 1020 + place % 1024
+    xml = stripped[start : start + length]
+    assert where in xml
+    changed = what if replace or b"encoding" in what else where + what
+    changed = what + where if what.startswith(b"<!") else changed
+    xml = xml.replace(where, changed, 1)
+    body = bytearray(stripped[:start] + xml)
+    body += bytes(-len(body) % 1020)
+    struct.pack_into("<QQQ", body, 16, len(body) // 1020 * 1024, place, len(xml))
+    pages = (bytes(body[k : k + 1020]) for k in range(0, len(body), 1020))
+    path.write_bytes(b"".join(page + struct.pack(">I", crc32c(page)) for page in pages))
+
+
+def crc32c(data):
+    """Castagnoli's checksum, as E57 has it (ASTM E2807, section 8.3)."""
+    crc = 0xFFFFFFFF
+    for byte in data:
+        crc ^= byte
+        for _ in range(8):
+            crc = crc >> 1 ^ (0x82F63B78 if crc & 1 else 0)
+    return crc ^ 0xFFFFFFFF
 
 
 def test_without_the_extra_the_install_line_is_said(tmp_path):

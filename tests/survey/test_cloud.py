@@ -306,7 +306,7 @@ def test_points_of_others_that_are_not_finite_are_left_out_and_counted(project, 
     assert result["points"] == len(cloud) + len(cloud) // 2
     broken = len(cloud) - len(cloud) // 2
     assert [one["left_out"] for one in result["passes"]] == [0, broken]
-    assert f"{broken:,} points that are not finite were left out" in result["passes"][1]["words"]
+    assert f"{broken:,} points without a place" in result["passes"][1]["words"]
 
 
 def test_the_commands_merge_export_and_go_on(project, tmp_path, capsys, cloud):

@@ -5,14 +5,12 @@ import math
 from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 from statistics import median
 from typing import Any, Literal
 
 import av
 import numpy as np
 
-from ..errors import FormatError
 from ..types.arrays import Image
 from .colour import grey_from_colour, is_green
 
@@ -42,27 +40,6 @@ class Loss:
     def end(self) -> int:
         """Number of the first picture after them."""
         return self.first + self.count
-
-
-def open_video(path: Path) -> Any:
-    """Open a video file as PyAV's container; close it after use.
-
-    Raises:
-        FormatError: FFmpeg does not know it, or it holds no moving pictures.
-    """
-    try:
-        container = av.open(f"file:{path}")  # Without "file:" a colon in the name means a protocol.
-    except (av.error.FFmpegError, OSError) as error:
-        raise FormatError(
-            f"{path} cannot be read as a video ({error.strerror}). If it was cut off while it was "
-            "recorded, repair it with a video tool, or record into .mkv, which bears a cut."
-        ) from error
-    kind = container.format.name
-    if not container.streams.video or kind == "tty" or kind.startswith("image"):
-        container.close()
-        raise FormatError(f"{path} holds no video; give a video file or a folder of pictures.")
-    container.streams.video[0].thread_type = "AUTO"
-    return container
 
 
 def decode_pictures(container: Any) -> Iterator[Picture | Loss]:

@@ -15,7 +15,8 @@ from ..io.times_csv import read_times
 from ..types.arrays import Image
 from .base import AbstractRecording, spread_evenly
 from .clock import Clock, usual_spacing
-from .decode import Picture, decode_pictures, grey_from_video, open_video, picture_time
+from .container import open_video
+from .decode import Picture, decode_pictures, grey_from_video, picture_time
 from .fields import FieldOrder, FieldVerdict, find_field_order
 from .folder import TIMES, ImageFolder, is_picture, list_pictures, read_grey
 from .seek import read_runs

@@ -8,7 +8,8 @@ from typing import Any
 
 import av
 
-from .decode import Picture, decode_pictures, open_video, picture_time
+from .container import open_video
+from .decode import Picture, decode_pictures, picture_time
 
 _NOWHERE = float("-inf")
 _SAME = 1e-6

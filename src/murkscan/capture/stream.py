@@ -67,7 +67,9 @@ def copy_stream(
 def _open(source: str, timeout: float) -> Any:
     name = source if "://" in source else f"file:{source}"
     try:
-        stream = av.open(name, options=_OPTIONS, timeout=(timeout, timeout))
+        stream = av.open(
+            name, options=_OPTIONS, timeout=(timeout, timeout), metadata_errors="replace"
+        )
     except (av.error.FFmpegError, OSError) as error:
         raise _silence(source, timeout, error) from error
     if not stream.streams.video or not stream.streams.video[0].width:

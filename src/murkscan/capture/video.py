@@ -11,7 +11,8 @@ from ..errors import FormatError
 from ..types.frame import Frame
 from .base import AbstractRecording, Skip, fingerprint_files, ignore_skip, spread_evenly
 from .clock import Clock
-from .decode import Loss, decode_pictures, grey_from_video, open_video, picture_time
+from .container import open_video
+from .decode import Loss, decode_pictures, grey_from_video, picture_time
 from .fields import FieldOrder, split_fields
 from .seek import pictures_at
 from .timed import TimedPicture, time_pictures

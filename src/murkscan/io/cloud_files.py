@@ -1,5 +1,6 @@
 """Clouds in every format, told by the suffix."""
 
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 from pathlib import Path
@@ -73,8 +74,19 @@ def iterate_cloud_file(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud
 
 
 def load_cloud_file(path: Path) -> PointCloud:
-    """Read a whole cloud of any of the formats; see `iterate_cloud_file`."""
-    return PointCloud.concatenate(list(iterate_cloud_file(path)))
+    """Read a whole cloud of any of the formats; see `iterate_cloud_file`.
+
+    Points that cannot be (`PointCloud.is_sound`) are left out, and a warning says how many.
+    """
+    cloud = PointCloud.concatenate(list(iterate_cloud_file(path)))
+    sound = cloud.is_sound()
+    if not sound.all():
+        warnings.warn(
+            f"{path}: {(~sound).sum():,} of {len(cloud):,} points were left out, since they have "
+            "no place, or a sigma or a normal that cannot be.",
+            stacklevel=2,
+        )
+    return cloud[sound]
 
 
 def check_cloud_suffix(path: Path) -> None:

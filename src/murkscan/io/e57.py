@@ -13,6 +13,7 @@ from ..types.cloud import PointCloud
 from ..types.pose import Pose
 from .atomic import replacing
 from .cloud_columns import BLOCK, COLUMNS, SCALARS, as_rows, from_columns, known_name
+from .e57_xml import check_e57_xml
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -98,14 +99,15 @@ def iterate_e57(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud]:
     """
     pye57 = import_pye57()
     lib = pye57.libe57
-    path.stat()
+    check_e57_xml(path)
     try:
         with pye57.E57(str(path)) as file:
             for number in range(file.scan_count):
                 yield from _read_scan(lib, file, number, path, block)
-    except (lib.E57Exception, RuntimeError, ValueError, KeyError, IndexError) as error:
-        if isinstance(error, FormatError):
-            raise
+    except FormatError:
+        raise
+    # Nodes may be of any kind in any place, and fail in any way.
+    except Exception as error:
         raise FormatError(
             f"{path} cannot be read as E57: it is damaged, or of a kind that is not known here. "
             "Save it anew, or as .las."

@@ -15,6 +15,8 @@ _RECORD = 54
 """Bytes of the head of a variable-length record."""
 _PACKED = 0x80
 """Bit of the point format that says LAZ."""
+_POINT_SIZES = (20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67)
+"""Bytes of a point of each format, at least (LAS 1.4 R15, tables 7 to 17)."""
 _SMALLEST_CHUNK = 16
 """Bytes below which no chunk of packed points is."""
 
@@ -26,6 +28,7 @@ class _Stated:
     offset: int
     num_records: int
     is_packed: bool
+    point_format: int
     point_size: int
     count: int
     numbers: tuple[float, ...]
@@ -54,6 +57,7 @@ def check_las_header(path: Path) -> None:
             )
         if not np.isfinite(stated.numbers).all():
             raise FormatError(f"{path} has a scale or an offset that is no number.")
+        _check_point_size(stated, path)
         wanted = stated.count * stated.point_size
         if stated.is_packed:
             _check_chunks(file, stated, path, size)
@@ -72,8 +76,25 @@ def _read(head: bytes) -> _Stated:
     if minor >= 4 and len(head) >= 255:
         (count,) = struct.unpack_from("<Q", head, 247)
     numbers = struct.unpack_from("<6d", head, 131)
-    packed = bool(kind & _PACKED)
-    return _Stated(minor, header_size, offset, num_records, packed, point_size, count, numbers)
+    packed, kind = bool(kind & _PACKED), kind & 0x3F
+    return _Stated(
+        minor, header_size, offset, num_records, packed, kind, point_size, count, numbers
+    )
+
+
+def _check_point_size(stated: _Stated, path: Path) -> None:
+    """Refuse points that have no room for what their format says is in them."""
+    if stated.point_format >= len(_POINT_SIZES):
+        raise FormatError(
+            f"{path} has points of format {stated.point_format}, which LAS 1.4 does not know; it "
+            "is damaged, or newer."
+        )
+    needed = _POINT_SIZES[stated.point_format]
+    if stated.point_size < needed:
+        raise FormatError(
+            f"{path} declares points of {stated.point_size} bytes, but those of its format "
+            f"{stated.point_format} have {needed}; it is damaged. Save it anew."
+        )
 
 
 def _check_chunks(file: BinaryIO, stated: _Stated, path: Path, size: int) -> None:

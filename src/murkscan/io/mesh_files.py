@@ -8,6 +8,7 @@ import trimesh
 
 from ..errors import FormatError, InputError
 from ..types.arrays import Colours, FaceMask, Faces
+from ..types.cloud import FARTHEST
 from ..types.mesh import Mesh
 from . import mesh_glb, mesh_obj, mesh_ply
 from .atomic import replacing
@@ -64,7 +65,7 @@ def load_mesh(path: Path) -> Mesh:
     # Which error a damaged file ends in is up to trimesh's readers: any.
     except Exception as error:
         raise FormatError(f"{path} is not {_NAMES[kind]} file that can be read.") from error
-    is_placed = vertices.shape[1:] == (3,) and np.isfinite(vertices).all()
+    is_placed = vertices.shape[1:] == (3,) and bool((np.abs(vertices) < FARTHEST).all())
     if len(faces) == 0 or not is_placed or not _is_inside(faces, len(vertices)):
         raise FormatError(f"{path} has no triangles, or some without a place; it is damaged.")
     vertices = vertices * _GLB_FROM_OURS if kind == "glb" else vertices

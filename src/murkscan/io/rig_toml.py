@@ -18,6 +18,7 @@ from .rig_as_tables import as_tables as as_tables
 from .rig_as_tables import camera_table, covariance_table, laser_table, mount_table, water_table
 from .rig_stale import drop_stale, fingerprints, water_of
 from .rig_tables import RigTable
+from .toml_files import parse_toml
 from .validation import explain
 
 
@@ -190,11 +191,12 @@ def _lay_out(record: dict[str, Any]) -> dict[str, Any]:
 
 def _read(path: Path) -> tomlkit.TOMLDocument:
     try:
-        return tomlkit.parse(path.read_text("utf-8-sig"))
+        return parse_toml(path.read_text("utf-8-sig"), str(path))
     except FileNotFoundError as error:
         raise FormatError(f"There is no rig file {path}; give one with --rig.") from error
-    except (tomlkit.exceptions.ParseError, UnicodeDecodeError, IsADirectoryError) as error:
-        raise FormatError(f"{path} is not a TOML file: {error}.") from error
+    except (UnicodeDecodeError, OSError) as error:
+        why = error.strerror if isinstance(error, OSError) else "it is not text in UTF-8"
+        raise FormatError(f"{path} is not a TOML file: {why}.") from error
 
 
 def _write(path: Path, document: tomlkit.TOMLDocument) -> None:

@@ -13,6 +13,7 @@ from pydantic import ValidationError
 from ..errors import FormatError, InputError
 from ..io.poses import load_poses
 from ..io.rig_toml import as_tables, parse_rig, read_tables
+from ..io.toml_files import parse_toml
 from ..io.validation import explain
 from ..types.arrays import Scalars
 from ..types.rig import Rig
@@ -122,10 +123,7 @@ def parse_scene(text: str, name: str, folder: Path) -> Scene:
         FormatError: As for `load_scene`.
         InputError: As for `load_scene`.
     """
-    try:
-        tables = tomlkit.parse(text).unwrap()
-    except tomlkit.exceptions.ParseError as error:
-        raise FormatError(f"{name} is not a TOML file: {error}.") from error
+    tables = parse_toml(text, name).unwrap()
     try:
         return _as_scene(SceneTable.model_validate(tables), name, folder)
     except ValidationError as error:

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..capture.decode import Loss, decode_pictures, open_video
+from ..capture.container import open_video
+from ..capture.decode import Loss, decode_pictures
 from ..capture.folder import list_pictures
 from ..errors import FormatError, InputError
 from ..io.images import read_colour

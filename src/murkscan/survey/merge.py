@@ -44,9 +44,9 @@ class Pass:
     path: Path
 
     def __iter__(self) -> Iterator[PointCloud]:
-        """Give its points in blocks; points that are not finite are left out."""
+        """Give its points in blocks; points that cannot be are left out."""
         for block in self._blocks():
-            yield block[np.isfinite(block.points).all(axis=1)]
+            yield block[block.is_sound()]
 
     def way(self, low: int, high: int) -> Trajectory | None:
         """Give the poses at its frames, their numbers for times; None where it has no poses."""
@@ -76,10 +76,11 @@ class Pass:
             check_cloud_suffix(self.path)
         count = total = 0
         for block in self._blocks():
-            count += int(np.isfinite(block.points).all(axis=1).sum())
+            count += int(block.is_sound().sum())
             total += len(block)
         if count == 0:
-            raise InputError(f"{self.path} has no points; leave it out.")
+            why = f": all {total:,} have no place, sigma or normal that can be" if total else ""
+            raise InputError(f"{self.path} has no points{why}; leave it out.")
         return count, total - count
 
     def _blocks(self) -> Iterator[PointCloud]:
@@ -108,8 +109,8 @@ def merge_passes(
         progress: Told how many passes are aligned.
 
     Returns:
-        points, and passes: for each its path, frames, points that were left out since they are
-        not finite, correction, share of its matches in each pass it was laid on, and words for it.
+        points, and passes: for each its path, frames, points that were left out since they
+        cannot be, correction, share of its matches in each pass it was laid on, and words for it.
 
     Raises:
         InputError: out is no new folder, a pass is empty or numbers its frames too high, or the
@@ -236,7 +237,8 @@ def _place(
 
 
 def _say_left_out(count: int) -> str:
-    return f"; {count:,} points that are not finite were left out" if count else ""
+    words = "points without a place, or with a sigma or a normal that cannot be, were left out"
+    return f"; {count:,} {words}" if count else ""
 
 
 def _align_all(

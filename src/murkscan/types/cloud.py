@@ -16,6 +16,9 @@ from .arrays import (
     SmallNumbers,
 )
 
+FARTHEST = 1e11
+"""Coordinates beyond which nothing lies, in whatever unit: the Earth's girth is 4e10 mm."""
+
 
 @dataclass(frozen=True, eq=False)
 class PointCloud:
@@ -44,6 +47,15 @@ class PointCloud:
     def __len__(self) -> int:
         """Count the points."""
         return len(self.points)
+
+    def is_sound(self) -> Mask:
+        """Tell which points can be: at a place, with a normal, and with deviations not below 0.
+
+        Files of others hold points that are not finite, or lie where nothing is.
+        """
+        placed = np.abs(self.points).max(axis=1, initial=0) < FARTHEST  # not true of NaN
+        measured = (self.sigma >= 0) & (self.sigma_common >= 0)
+        return placed & measured & np.isfinite(self.normals).all(axis=1)
 
     @classmethod
     def concatenate(cls, clouds: Sequence["PointCloud"]) -> "PointCloud":
