@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from murk_rows import ROWS
 from murk_traced import FRAMES, is_possible, trace_recording
 
 from murkscan.capture import AbstractRecording, open_recording
@@ -67,7 +68,7 @@ OTHERS: dict[str, Callable[[Scene], Scene]] = {
 }
 """Cases at c = 3 /m beside the ladder, and what is changed for each."""
 TRACED = "c3-traced"
-CASES = (*RUNGS, *OTHERS, TRACED, *HD)
+CASES = (*RUNGS, *OTHERS, TRACED, *ROWS, *HD)
 
 
 @dataclass(frozen=True)
@@ -85,15 +86,19 @@ class Part:
 
     def scene(self) -> Scene:
         """Make the scene: pictures from the middle of the hull, with paint of the seed's own."""
-        ladder = self.case if self.case in RUNGS + HD else "c3"
-        scene = load_scene(f"hull-{ladder}")
+        row = ROWS.get(self.case)
+        scene = self._on_ladder() if row is None else row.scene(self.seed)
         rows, middle = scene.row_step, len(scene) // (2 * scene.row_step)
         first = middle - self.pictures // 2
+        return replace(scene, times=scene.times[rows * first : rows * (first + self.pictures)])
+
+    def _on_ladder(self) -> Scene:
+        ladder = self.case if self.case in RUNGS + HD else "c3"
+        scene = load_scene(f"hull-{ladder}")
         scene = replace(
             scene,
             seed=self.seed,
             bodies=tuple(_repaint(body, self.seed) for body in scene.bodies),
-            times=scene.times[rows * first : rows * (first + self.pictures)],
             sensor=replace(scene.sensor, codec="ffv1"),
         )
         return OTHERS.get(self.case, lambda same: same)(scene)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from murk_causes import count_causes
 from murk_edges import answer_to_jumps, answer_to_paint, pull_of_paint, rise_of, width_of_paint
-from murk_match import VISIBLE, Matched
+from murk_match import VISIBLE, Matched, scan_line
 
 BOUNDS = (0.1, 0.3, VISIBLE)
 """Bounds of a scan line by which recall is told [px]."""
@@ -21,8 +21,17 @@ _FULL = 2000
 """Detections that a bin of posteriors holds at least."""
 
 
-def judge(matched: Matched) -> dict[str, Any]:
-    """Give what is known of one finder in one recording: counts to be added up, and medians."""
+_HOLE = 60
+"""Scan lines without a surface that count as a hole, at most, between others that have one."""
+
+
+def judge(matched: Matched, lines: int) -> dict[str, Any]:
+    """Give what is known of one finder in one recording: counts to be added up, and medians.
+
+    Args:
+        matched: Found and true centres.
+        lines: Scan lines of all frames.
+    """
     seen, hit, error = matched.is_visible, matched.is_hit, matched.error
     crlb = matched.truth.crlb
     within = [
@@ -35,6 +44,8 @@ def judge(matched: Matched) -> dict[str, Any]:
     return {
         "visible": [int((seen & one).sum()) for one in within],
         "hit": [int((seen & hit & one).sum()) for one in within],
+        "lines": lines,
+        "holes": _count_in_holes(matched),
         "found": len(matched.found),
         "right": int(matched.is_right.sum()),
         "ratio": _median(np.abs(error[sure]) / crlb[sure]) / _MEDIAN,
@@ -48,6 +59,17 @@ def judge(matched: Matched) -> dict[str, Any]:
         "pull": pull_of_paint(matched),
         "causes": count_causes(matched),
     }
+
+
+def _count_in_holes(matched: Matched) -> list[int]:
+    """Count the scan lines of holes in which a point is given, and all of them."""
+    direct = ~matched.truth.is_reflected
+    shown = np.unique(scan_line(matched.truth.frame[direct], matched.truth.pixels[direct]))
+    step = np.diff(shown)
+    ends = np.flatnonzero((step > 1) & (step <= _HOLE))
+    holes = np.concatenate([[0], *(np.arange(shown[i] + 1, shown[i + 1]) for i in ends)])[1:]
+    given = np.isin(holes, scan_line(matched.found.frame, matched.found.pixels))
+    return [int(given.sum()), len(holes)]
 
 
 def _by_posterior(matched: Matched) -> list[list[float]]:
@@ -72,7 +94,10 @@ def pool(parts: list[dict[str, Any]]) -> dict[str, float]:
     figures = {"recall": _share(hit.sum(), visible.sum())}
     for k, name in enumerate(("≤ 0.1", "0.1–0.3", "0.3–0.5")):
         figures[f"recall {name}"] = _share(hit[k], visible[k])
-    figures["precision"] = _share(_sum(parts, "right"), _sum(parts, "found"))
+    right, found = _sum(parts, "right"), _sum(parts, "found")
+    figures["precision"] = _share(right, found)
+    figures["false"] = 1e4 * float((found - right) / _sum(parts, "lines"))
+    figures["in holes"] = _share(*_sum(parts, "holes"))
     for name in ("ratio", "bias", "mean", "absolute"):
         figures[name] = _mean([part[name] for part in parts])
     figures["within sigma"] = _share(inside, known)

@@ -9,6 +9,8 @@ from murk_cases import CASES, HD, OTHERS, RUNGS, TRACED, Part
 from murk_causes import FALSE, MISSED
 from murk_judge import pool
 from murk_plot import LABELS, STYLES, draw_curves
+from murk_rows_page import WORDS as ROWS_WORDS
+from murk_rows_page import rows_figures, rows_table
 from murk_run import load_results
 from murk_traced import SAMPLES
 from murk_words import AFTER, CAUSES, HOW, PULL, WATERS
@@ -55,13 +57,15 @@ def tell_page(cache: Path) -> None:
         "## Other waters, c = 3 /m", WATERS.format(**SAMPLES),
         _table_of_champion(results, pooled, (*OTHERS, TRACED)),
         _table("recall / precision [%]", [*OTHERS, TRACED], pooled, _both),
+        "## Real cameras, windows and lasers", ROWS_WORDS, rows_table(pooled),
         "## 1920 × 1200", _table_of_champion(results, pooled, HD),
         "## Pull of paint", PULL, _table("along / across the stripe [px]", list(RUNGS), pooled,
                                          _pulls),
         "## Speed", _table_of_speed(results), AFTER, "## Figures",
     ]  # fmt: skip
     title = "Finding the stripe in the murk"
-    tell("murk", title, _figures(results, pooled), note="\n\n".join(note))
+    figures = _figures(results, pooled) + rows_figures(pooled, CHAMPION)
+    tell("murk", title, figures, note="\n\n".join(note))
 
 
 def _of_picture(pooled: dict[str, Any]) -> float:
@@ -91,7 +95,9 @@ def _what_was_run(results: Results) -> str:
 def _figures(results: Results, pooled: dict[str, Any]) -> list[Figure]:
     """Give the champion's figures, with their bars."""
     figures = []
-    for case in (case for case in CASES if CHAMPION in pooled.get(case, {})):
+    for case in (*RUNGS, *OTHERS, TRACED, *HD):
+        if CHAMPION not in pooled.get(case, {}):
+            continue
         values = _of_champion(pooled[case][CHAMPION])
         for name, (title, unit, most, least) in _BARS.items():
             if not math.isnan(values[name]):

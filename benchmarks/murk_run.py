@@ -35,7 +35,8 @@ def judge_part(part: Part, name: str, finder: AbstractExtractor, cache: Path) ->
         list(finder.extract(frames[:_WARM], rig, background))
     found, seconds = _extract(finder, frames, rig, background)
     truth = pick_frames(recorded.truth, [frame.index for frame in frames])
-    result = judge(match_stripes(found, truth, part.paint(truth)))
+    lines = len(frames) * rig.camera.size[0]
+    result = judge(match_stripes(found, truth, part.paint(truth)), lines)
     result["seconds"] = seconds | {"decode": decode}
     path = cache / part.name / _JUDGED / f"{name}.json"
     path.parent.mkdir(exist_ok=True)

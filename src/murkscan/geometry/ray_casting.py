@@ -38,6 +38,9 @@ class RayCaster:
 
     def first_hits(self, rays: Rays) -> Hits:
         """Find what each ray meets first; a ray with NaN meets nothing."""
+        if len(self.mesh.faces) == 0:
+            count = len(rays.origins)
+            return Hits(np.full(count, -1), np.full(count, np.inf))
         origins = np.nan_to_num(rays.origins - self._middle)
         away = np.nan_to_num(rays.directions)
         face = self._scene.run(origins.astype(np.float32), away.astype(np.float32))

@@ -6,6 +6,7 @@ from .frames import SimulatedFrame as SimulatedFrame
 from .frames import Simulator as Simulator
 from .frames import simulate_frames as simulate_frames
 from .line_image import LineImage as LineImage
+from .overlay import Overlay as Overlay
 from .particles import Particles as Particles
 from .scene import Scene as Scene
 from .scene_file import as_standalone as as_standalone
@@ -20,3 +21,4 @@ from .vehicle import Navigation as Navigation
 from .vehicle import Unrest as Unrest
 from .vehicle import drive as drive
 from .vehicle import log_navigation as log_navigation
+from .window import Window as Window

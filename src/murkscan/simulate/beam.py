@@ -17,6 +17,10 @@ _NUM_ANGLES = 4001
 """Rays by which the fan's spreading is tabled."""
 _EDGE = 0.02
 """Share of a Powell fan's half width over which it fades at its ends."""
+_STREAK = math.radians(0.25)
+"""Angle from one streak of a fan to the next."""
+_STREAKS = np.random.default_rng(532).standard_normal(1024) * math.sqrt(1.5)
+"""Strength of each; a line between neighbours has two thirds of their variance."""
 
 
 @dataclass(frozen=True)
@@ -36,6 +40,10 @@ class Light:
     """Thickness of the sheet at its source, full width at 1/e² [m]."""
     ambient: float = 0.0
     """Irradiance by daylight or lamps, in the laser's colour, on every surface [W/m²]."""
+    streaks: float = 0.0
+    """How uneven the fan is along its angle, 1σ, as a share: dust and grooves on its optics."""
+    is_on: bool = True
+    """Whether the lasers shine; exposure is set as if they did."""
 
     def __post_init__(self) -> None:
         """Refuse light that cannot be."""
@@ -51,6 +59,10 @@ class Light:
         if not 0 <= self.ambient <= 1e6:
             raise InputError(
                 f"light.ambient_w_m2 must lie between 0 and 1e6, got {self.ambient:g}."
+            )
+        if not 0 <= self.streaks <= 1:
+            raise InputError(
+                f"light.streaks_percent must lie between 0 and 100, got {100 * self.streaks:g}."
             )
 
 
@@ -109,7 +121,13 @@ class Beam:
         share = np.abs(np.tan(angles)) / edge
         fade = np.clip((1 - share) / _EDGE, 0, 1)
         even = self.light.power / ((2 - _EDGE) * edge) / np.cos(angles) ** 2
-        return np.where(share <= 1, even * fade, 0.0)
+        return np.where(share <= 1, even * fade * self._unevenness(angles), 0.0)
+
+    def _unevenness(self, angles: Scalars) -> Scalars:
+        """Give the power at these angles as a share of an even fan's."""
+        middle = len(_STREAKS) // 2
+        strength = np.interp(angles / _STREAK + middle, np.arange(len(_STREAKS)), _STREAKS)
+        return np.exp(self.light.streaks * strength - self.light.streaks**2 / 2)
 
     def _across(self, angles: Scalars, ranges: Scalars) -> Directions:
         """How far a point of the sheet moves with the angle of its ray, across the ray [m/rad]."""

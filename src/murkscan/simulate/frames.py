@@ -10,13 +10,16 @@ from ..types.arrays import Mask, Scalars, SmallNumbers
 from ..types.frame import Frame
 from ..types.true_stripe import TrueStripe
 from .ambient import draw_ambient
+from .fixed_pattern import draw_fixed_pattern
 from .information import measure_information
 from .laser_view import LaserView, view_laser
 from .line_image import LineImage, draw_laser
 from .lit_line import LitLine, cast_fan, find_lit_line
+from .overlay import write_over
 from .scene import Scene
 from .sensor import Picture, expose, sensitivity
 from .snow_image import density_for
+from .window import WindowView, view_window
 
 _BRIGHTEST = 0.97
 """Quantile of the stripe's peaks by which the exposure is set."""
@@ -28,6 +31,9 @@ _TRIED = 300
 """Frames that are tried before a sheet is said never to meet the object."""
 _FAINTEST = 1e-25
 """Radiance below which no exposure shows anything [W/m²/sr]."""
+_SIGHT = 4.8
+"""Attenuation lengths within which an empty sea's particles are counted: there a black disc
+disappears (Hou, Lee and Weidemann, Optics Express 15(6), 2007)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +67,10 @@ class Simulator:
     scene: Scene
     lasers: tuple[LaserView, ...]
     electrons: Picture
-    """Electrons that 1 W/m²/sr makes in each pixel."""
+    """Electrons that 1 W/m²/sr behind the window makes in each pixel."""
+    dark: Picture
+    """Electrons that are in each pixel without any light from the scene."""
+    window: WindowView
     snow_density: tuple[float, ...]
     """Particles that each laser's sheet may cut [1/m³]."""
 
@@ -73,21 +82,44 @@ class Simulator:
             InputError: The sheet never meets the object where the camera sees it.
         """
         lasers = tuple(view_laser(scene, number) for number in range(len(scene.rig.lasers)))
-        shown = _lit_frames(scene, lasers) if lasers else [0]
+        shown = _lit_frames(scene, lasers) if lasers and scene.bodies else [0]
         if scene.sensor.peak_grey is None:  # only the density of particles is asked for
             shown = [shown[len(shown) // 2]]
         lights = [[draw_laser(scene, laser, number) for laser in lasers] for number in shown]
         densities = tuple(
-            density_for(scene.particles, laser, light.mask, _reach(light))
+            density_for(scene.particles, laser, light.mask, _reach(scene, light))
             for laser, light in zip(lasers, lights[len(lights) // 2], strict=True)
         )
-        return cls(scene, lasers, _electrons(scene, lasers, lights), densities)
+        return cls._fit_out(scene, lasers, _electrons(scene, lasers, lights), densities)
+
+    @classmethod
+    def _fit_out(
+        cls,
+        scene: Scene,
+        lasers: tuple[LaserView, ...],
+        electrons: Picture,
+        densities: tuple[float, ...],
+    ) -> "Simulator":
+        """Add what stands still in the picture: the window's flaws and the sensor's own."""
+        camera, sensor = scene.rig.camera, scene.sensor
+        axis = lasers[0].scan_lines.laser.axis if lasers else "y"
+        window = view_window(
+            scene.window,
+            camera.size,
+            focal_length=camera.focal_length[0],
+            axis=axis,
+            seed=scene.seed,
+        )
+        pattern = draw_fixed_pattern(sensor, camera.size, seed=scene.seed)
+        dark = pattern.dark + window.ghost / np.float32(sensor.grey_per_electron)
+        return cls(scene, lasers, electrons * pattern.response, dark, window, densities)
 
     def draw_light(self, number: int) -> LightImage:
-        """Draw all light of a frame."""
+        """Draw all light of a frame, before the window."""
+        shining = self.lasers if self.scene.light.is_on else ()
         lasers = tuple(
             draw_laser(self.scene, laser, number, snow_density=density)
-            for laser, density in zip(self.lasers, self.snow_density, strict=True)
+            for laser, density in zip(shining, self.snow_density, strict=False)
         )
         ambient = np.zeros_like(self.electrons)
         if self.scene.light.ambient > 0:
@@ -96,25 +128,28 @@ class Simulator:
 
     def draw_frame(self, number: int) -> SimulatedFrame:
         """Draw a frame, with its noise and its truth; it depends on no other frame."""
-        light = self.draw_light(number)
-        electrons = light.total * self.electrons
-        noise = np.random.default_rng([self.scene.seed, 0, number])
-        image = expose(self.scene.sensor, self.scene.as_field(electrons, number), noise)
+        scene, light = self.scene, self.draw_light(number)
+        electrons = self.window.pass_light(light.total) * self.electrons + self.dark
+        noise = np.random.default_rng([scene.seed, 0, number])
+        image = expose(scene.sensor, scene.as_field(electrons, number), noise)
+        time = float(scene.times[number] - scene.times[0])
+        over = scene.overlay.draw(scene.rig.camera.size, time, scene.sensor.white)
+        image = write_over(image, scene.as_field(over, number))
         frame = Frame(
             image,
             number,
-            float(self.scene.times[number]),
-            self.scene.first_row(number),
-            self.scene.row_step,
+            float(scene.times[number]),
+            scene.first_row(number),
+            scene.row_step,
         )
-        return SimulatedFrame(frame, self._tell_truth(light, electrons, number), light)
+        lost = scene.sensor.is_full(electrons) | ~np.isnan(over)
+        variance = np.where(lost, np.inf, scene.sensor.variance(electrons))
+        return SimulatedFrame(frame, self._tell_truth(light, variance, number), light)
 
-    def _tell_truth(self, light: LightImage, electrons: Picture, number: int) -> TrueStripe:
-        full = self.scene.sensor.is_full(electrons)
-        variance = np.where(full, np.inf, self.scene.sensor.variance(electrons))
+    def _tell_truth(self, light: LightImage, variance: Picture, number: int) -> TrueStripe:
         parts = [
             self._truth_of(laser, light.lasers[laser], variance, number)
-            for laser in range(len(self.lasers))
+            for laser in range(len(light.lasers))
         ]
         return TrueStripe.concatenate(parts)
 
@@ -125,7 +160,8 @@ class Simulator:
         length = self.scene.rig.camera.size["xy".index(self.lasers[laser].scan_lines.laser.axis)]
         inside = (line.positions > -0.5) & (line.positions < length - 0.5)
         line, widths, reflected = line[inside], widths[inside], reflected[inside]
-        pictures = [light.stripe * self.electrons, light.slope * self.electrons, variance]
+        seen = self.electrons * self.window.transmission
+        pictures = [light.stripe * seen, light.slope * seen, variance]
         told = np.ones(self.scene.rig.camera.size[0], bool)
         if self.lasers[laser].scan_lines.laser.axis == "y":
             pictures = [picture.T for picture in pictures]
@@ -194,8 +230,10 @@ def _is_lit(scene: Scene, lasers: tuple[LaserView, ...], number: int) -> bool:
     return False
 
 
-def _reach(light: LineImage) -> float:
-    """Give how far away the farthest true centre is [m]."""
+def _reach(scene: Scene, light: LineImage) -> float:
+    """Give how far away the farthest true centre is [m]; in an empty sea, how far one sees."""
+    if not scene.bodies:
+        return _SIGHT / max(scene.attenuation, 1e-3)
     return float(np.linalg.norm(light.line.points, axis=1).max(initial=0.0))
 
 

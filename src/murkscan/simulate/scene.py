@@ -13,10 +13,12 @@ from ..types.pose import Pose
 from ..types.rig import Rig
 from ..types.trajectory import Trajectory
 from .beam import Light
+from .overlay import Overlay
 from .particles import Particles
 from .sensor import Sensor
 from .surface import Body, Surroundings
 from .vehicle import Navigation
+from .window import Window
 
 _MOST_PIXELS = 50_000_000
 _FAR = 10.0
@@ -28,7 +30,7 @@ class Scene:
     """All that a simulated recording depends on; the same scene gives the same bytes."""
 
     bodies: tuple[Body, ...]
-    """What stands there."""
+    """What stands there; nothing in an empty sea."""
     rig: Rig
     """The camera and its lasers; its water is what bends the light."""
     trajectory: Trajectory
@@ -40,6 +42,8 @@ class Scene:
     light: Light = field(default_factory=Light)
     sensor: Sensor = field(default_factory=Sensor)
     particles: Particles = field(default_factory=Particles)
+    window: Window = field(default_factory=Window)
+    overlay: Overlay = field(default_factory=Overlay)
     glow: bool = True
     """Whether the sheet's own glow is drawn."""
     forward_scattering: bool = True
@@ -53,6 +57,11 @@ class Scene:
         """Refuse a scene without light or without frames."""
         if not self.rig.lasers and self.light.ambient == 0:
             raise InputError("A scene needs light: add rig.laser, or light.ambient_w_m2.")
+        if not self.bodies and self.sensor.peak_grey is not None:
+            raise InputError(
+                "sensor.peak_grey is that of a stripe on an [object]: in an empty sea give "
+                "sensor.exposure_ms, or an object."
+            )
         if len(self.times) == 0:
             raise InputError("motion.frames must be at least 1.")
 
@@ -66,6 +75,8 @@ class Scene:
 
     def _check_way(self) -> None:
         """Refuse a way that leads out of the scene."""
+        if not self.bodies:
+            return
         vertices = self.surroundings.mesh.vertices
         low, high = vertices.min(axis=0), vertices.max(axis=0)
         places = self.trajectory.at(self.times).positions

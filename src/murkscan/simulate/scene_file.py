@@ -104,7 +104,7 @@ def as_standalone(text: str, rig: Rig, folder: Path) -> str:
     if "poses" in document["motion"]:
         path = folder / document["motion"]["poses"]
         document["motion"]["poses"] = str(path.resolve())
-    bodies = document["object"]
+    bodies = document.get("object", [])
     for body in [bodies] if isinstance(bodies, dict) else bodies:
         if body["mesh"] not in SHAPES:
             body["mesh"] = str((folder / body["mesh"]).resolve())
@@ -150,6 +150,8 @@ def _as_scene(table: SceneTable, name: str, folder: Path) -> Scene:
         light=table.light.as_light(),
         sensor=sensor,
         particles=table.water.as_particles(),
+        window=table.window.as_window(),
+        overlay=table.overlay.as_overlay(),
         glow=table.water.glow,
         forward_scattering=table.water.forward_scattering,
         navigation=None

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
+from pydantic import Field, FiniteFloat
 from scipy.spatial.transform import Rotation
 
 from ..errors import InputError
@@ -19,11 +19,11 @@ from ..optics.turbidity import medium_of
 from ..types.mesh import Mesh
 from ..types.pose import Pose
 from ..types.water import Water
-from .beam import Light
+from .camera_tables import LightTable, OverlayTable, SensorTable, WindowTable
 from .choices import SHAPES, TEXTURES, make_choice
 from .particles import Particles
-from .sensor import FACTORS, KEYS, Codec, Colour, Sensor
 from .surface import Body
+from .table import OpenTable, Table
 from .textures import AbstractTexture
 from .vehicle import Navigation, Unrest
 
@@ -31,23 +31,6 @@ _UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254}
 _STATE = {"temperature_c", "salinity_psu", "depth_m", "index"}
 
 _Vector = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
-
-
-class Table(BaseModel):
-    """A table whose unknown keys are errors."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class OpenTable(BaseModel):
-    """A table that may hold the settings of what it names."""
-
-    model_config = ConfigDict(extra="allow", frozen=True)
-
-    @property
-    def settings(self) -> dict[str, Any]:
-        """The keys that are not its own."""
-        return dict(self.model_extra or {})
 
 
 class SurfaceTable(OpenTable):
@@ -177,51 +160,6 @@ class WaterTable(Table):
         return FournierForand() if self.phase == "fournier-forand" else PetzoldHarbour()
 
 
-class LightTable(Table):
-    """[light]."""
-
-    power_mw: FiniteFloat = 30.0
-    divergence_mrad: FiniteFloat = 1.4
-    waist_mm: FiniteFloat = 1.0
-    ambient_w_m2: FiniteFloat = 0.0
-
-    def as_light(self) -> Light:
-        """Give the light."""
-        return Light(
-            self.power_mw / 1e3, self.divergence_mrad / 1e3, self.waist_mm / 1e3, self.ambient_w_m2
-        )
-
-
-class SensorTable(Table):
-    """[sensor]."""
-
-    full_well_e: FiniteFloat = 9000.0
-    read_noise_e: FiniteFloat = 9.0
-    shot_noise: bool = True
-    bits: int = 8
-    black_level: FiniteFloat = 4.0
-    psf_px: FiniteFloat = 0.7
-    composite_px: FiniteFloat = 0.0
-    vignetting: bool = True
-    exposure_ms: FiniteFloat = 10.0
-    f_number: FiniteFloat = 2.0
-    pixel_size_um: FiniteFloat = 5.0
-    quantum_efficiency: FiniteFloat = 0.6
-    gain: FiniteFloat = 1.0
-    peak_grey: FiniteFloat | None = None
-    interlaced: bool = False
-    colour: Colour = "mono"
-    codec: Codec = "png"
-    crf: int = 23
-
-    def as_sensor(self) -> Sensor:
-        """Give the sensor."""
-        values = self.model_dump()
-        for field, key in KEYS.items():
-            values[field] = values.pop(key) / FACTORS.get(field, 1.0)
-        return Sensor(**values)
-
-
 class VehicleTable(Table):
     """[motion.vehicle]: how the vehicle departs from its straight way, 1σ."""
 
@@ -278,10 +216,12 @@ class SceneTable(Table):
 
     format: Literal[1]
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
-    object: ObjectTable | list[ObjectTable]
+    object: ObjectTable | list[ObjectTable] = Field(default_factory=list)
     surface: SurfaceTable = SurfaceTable()
     water: WaterTable = WaterTable()
     rig: dict[str, Any]
     light: LightTable = LightTable()
+    window: WindowTable = WindowTable()
     sensor: SensorTable = SensorTable()
+    overlay: OverlayTable = OverlayTable()
     motion: MotionTable

@@ -28,6 +28,9 @@ _BOUNDS = (
     ("pixel_size", 1e-6, 1e-4),
     ("quantum_efficiency", 0.001, 1),
     ("gain", 1e-3, 1e3),
+    ("response", 0, 0.5),
+    ("hot_pixels", 0, 0.5),
+    ("row_noise", 0, 1e4),
     ("crf", 0, 51),
 )
 """What cameras there are; a blur below 0.3 px would be sharper than its own pixels."""
@@ -38,9 +41,12 @@ KEYS = {
     "composite": "composite_px",
     "exposure": "exposure_ms",
     "pixel_size": "pixel_size_um",
+    "response": "response_percent",
+    "hot_pixels": "hot_pixels_percent",
+    "row_noise": "row_noise_grey",
 }
 """Names in scene.toml, where they differ."""
-FACTORS = {"exposure": 1e3, "pixel_size": 1e6}
+FACTORS = {"exposure": 1e3, "pixel_size": 1e6, "response": 100.0, "hot_pixels": 100.0}
 """From SI to the unit of that name."""
 _OVEREXPOSED = 100.0
 """How many times too bright a stripe may be."""
@@ -84,6 +90,12 @@ class Sensor:
     """Electrons a photon."""
     gain: float = 1.0
     """Multiplies the grey levels, not the full well."""
+    response: float = 0.0
+    """How much pixels differ in what they make of light, 1σ, as a share."""
+    hot_pixels: float = 0.0
+    """Share of pixels that are bright in the dark."""
+    row_noise: float = 0.0
+    """Noise that all pixels of a row have in common, 1σ [grey levels]."""
     peak_grey: float | None = None
     """Grey level above black that the brightest 3 % of the noise-free stripe shall reach, over nine
     frames of the recording; it takes the place of exposure and f-number."""
@@ -158,9 +170,17 @@ class Sensor:
         return photons * self.quantum_efficiency
 
     def variance(self, electrons: Picture) -> Picture:
-        """Give the variance of pixels that hold this many electrons on average [electrons²]."""
+        """Give the variance of pixels that hold this many electrons on average [electrons²].
+
+        A row's common noise is in it, as of pixels of a column, which have each their own.
+        """
+        common = (self.row_noise / self.grey_per_electron) ** 2
+        return self.own_variance(electrons) + np.float32(self.rounding + common)
+
+    def own_variance(self, electrons: Picture) -> Picture:
+        """Give the variance that each pixel has for itself, before rounding [electrons²]."""
         shot = electrons if self.shot_noise else np.zeros_like(electrons)
-        return shot + np.float32(self.read_noise**2 + self.rounding)
+        return shot + np.float32(self.read_noise**2)
 
     @property
     def rounding(self) -> float:
@@ -205,10 +225,14 @@ def expose(sensor: Sensor, electrons: Picture, noise: np.random.Generator) -> Im
     reading is the larger.
     """
     if sensor.read_noise > 0 or sensor.shot_noise:
-        spread = np.sqrt(sensor.variance(electrons) - np.float32(sensor.rounding))
+        spread = np.sqrt(sensor.own_variance(electrons))
         electrons = electrons + spread * noise.standard_normal(electrons.shape, np.float32)
     electrons = np.minimum(electrons, np.float32(sensor.full_well))
-    grey = np.rint(electrons * np.float32(sensor.grey_per_electron) + sensor.black_level)
+    grey = electrons * np.float32(sensor.grey_per_electron) + np.float32(sensor.black_level)
+    if sensor.row_noise > 0:
+        common = noise.standard_normal((len(grey), 1), np.float32)
+        grey += np.float32(sensor.row_noise) * common
+    grey = np.rint(grey)
     depth = np.uint8 if sensor.bits == 8 else np.uint16
     return np.clip(grey, 0, sensor.white).astype(depth)
 

@@ -41,14 +41,11 @@ class Surroundings:
 
     bodies: tuple[Body, ...]
 
-    def __post_init__(self) -> None:
-        """Refuse a scene without an object."""
-        if not self.bodies:
-            raise InputError("A scene needs at least one [object].")
-
     @cached_property
     def mesh(self) -> Mesh:
         """The triangles of all objects, in the world frame [m]."""
+        if not self.bodies:
+            return Mesh(np.zeros((0, 3)), np.zeros((0, 3), int))
         starts = np.cumsum([0, *(len(body.mesh.vertices) for body in self.bodies)])
         return Mesh(
             np.concatenate([body.world_from_object @ body.mesh.vertices for body in self.bodies]),
@@ -74,4 +71,5 @@ class Surroundings:
 
     @cached_property
     def _owner(self) -> Indices:
-        return np.repeat(np.arange(len(self.bodies)), [len(b.mesh.faces) for b in self.bodies])
+        counts = np.array([len(body.mesh.faces) for body in self.bodies], int)
+        return np.repeat(np.arange(len(self.bodies)), counts)

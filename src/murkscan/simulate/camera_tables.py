@@ -1,0 +1,89 @@
+"""The tables of scene.toml from the light to the picture, with their units."""
+
+from pydantic import FiniteFloat
+
+from .beam import Light
+from .overlay import Overlay
+from .sensor import FACTORS, KEYS, Codec, Colour, Sensor
+from .table import Table
+from .window import Window
+
+
+class LightTable(Table):
+    """[light]."""
+
+    power_mw: FiniteFloat = 30.0
+    divergence_mrad: FiniteFloat = 1.4
+    waist_mm: FiniteFloat = 1.0
+    ambient_w_m2: FiniteFloat = 0.0
+    streaks_percent: FiniteFloat = 0.0
+    laser_on: bool = True
+
+    def as_light(self) -> Light:
+        """Give the light."""
+        return Light(
+            self.power_mw / 1e3,
+            self.divergence_mrad / 1e3,
+            self.waist_mm / 1e3,
+            self.ambient_w_m2,
+            self.streaks_percent / 100,
+            self.laser_on,
+        )
+
+
+class WindowTable(Table):
+    """[window]: what stands still in the camera's window."""
+
+    dirt_percent: FiniteFloat = 0.0
+    scratches: int = 0
+    ghost_grey: FiniteFloat = 0.0
+    blur_px: FiniteFloat = 1.0
+
+    def as_window(self) -> Window:
+        """Give the window's flaws."""
+        return Window(self.dirt_percent / 100, self.scratches, self.ghost_grey, self.blur_px)
+
+
+class OverlayTable(Table):
+    """[overlay]: what is written over the pictures."""
+
+    text: tuple[str, ...] = ()
+    text_height_px: FiniteFloat = 14.0
+    border_grey: FiniteFloat | None = None
+
+    def as_overlay(self) -> Overlay:
+        """Give the overlay."""
+        return Overlay(self.text, self.text_height_px, self.border_grey)
+
+
+class SensorTable(Table):
+    """[sensor]."""
+
+    full_well_e: FiniteFloat = 9000.0
+    read_noise_e: FiniteFloat = 9.0
+    shot_noise: bool = True
+    bits: int = 8
+    black_level: FiniteFloat = 4.0
+    psf_px: FiniteFloat = 0.7
+    composite_px: FiniteFloat = 0.0
+    vignetting: bool = True
+    exposure_ms: FiniteFloat = 10.0
+    f_number: FiniteFloat = 2.0
+    pixel_size_um: FiniteFloat = 5.0
+    quantum_efficiency: FiniteFloat = 0.6
+    gain: FiniteFloat = 1.0
+    response_percent: FiniteFloat = 0.0
+    hot_pixels_percent: FiniteFloat = 0.0
+    row_noise_grey: FiniteFloat = 0.0
+    peak_grey: FiniteFloat | None = None
+    interlaced: bool = False
+    colour: Colour = "mono"
+    codec: Codec = "png"
+    crf: int = 23
+
+    def as_sensor(self) -> Sensor:
+        """Give the sensor."""
+        values = self.model_dump()
+        for field, key in KEYS.items():
+            values[field] = values.pop(key) / FACTORS.get(field, 1.0)
+        return Sensor(**values)
