@@ -94,7 +94,8 @@ def simulate_recording(
                 tell(frame.stripe.concatenate(stripes))
                 stripes.clear()
             progress("simulate", frame.frame.index + 1, len(scene))
-    save_mesh(out / "truth" / "mesh.ply", scene.surroundings.mesh)
+    if scene.bodies:
+        save_mesh(out / "truth" / "mesh.ply", scene.surroundings.mesh)
     if text is not None:
         with replacing(out / "truth" / "scene.toml") as aside:
             aside.write_text(text, "utf-8")
@@ -117,7 +118,12 @@ def _clear(out: Path) -> None:
     (out / _MARK).parent.mkdir(parents=True, exist_ok=True)
     with replacing(out / _MARK) as aside:
         aside.write_text("What is true of a recording that murkscan has simulated.\n", "utf-8")
-    left = [out / "recording.mkv", out / "navigation.csv", out / "frames" / "times.csv"]
+    left = [
+        out / "recording.mkv",
+        out / "navigation.csv",
+        out / "truth" / "mesh.ply",
+        out / "frames" / "times.csv",
+    ]
     left += (file for file in (out / "frames").glob("*.png") if file.stem.isdecimal())
     for path in left:
         path.unlink(missing_ok=True)
