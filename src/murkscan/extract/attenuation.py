@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
-from scipy.optimize import minimize_scalar
 
 from ..optics import (
     as_fan,
@@ -167,6 +166,8 @@ def _fit(
         broad: Width up to which it comes back, as the tangent of an angle.
         is_dark: Whether there is a dark level at all.
     """
+    from scipy.optimize import minimize_scalar
+
     use = seen.glow.block % _GROUPS != skip
     level, block = seen.glow.level[use], seen.glow.block[use]
     weight = 1.0 / (seen.glow.variance[use] + (_MODEL * level) ** 2)

@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
-from scipy.stats import t as student_t
+from scipy.special import stdtrit
 
 from ..errors import Degenerate
 from ..types.arrays import Directions, Indices, Points, Scalars, Vector
@@ -203,7 +203,7 @@ def _leave_out(
         found += np.outer(change, change)
         count += 1
     # Scaled so that 1.96 standard deviations hold 95 %, however few the pieces are.
-    return found * (student_t.ppf(0.975, max(count - 1, 1)) / _NORMAL_95) ** 2
+    return found * (stdtrit(max(count - 1, 1), 0.975) / _NORMAL_95) ** 2
 
 
 def _cut_all(points: Points) -> tuple[Indices, ...]:

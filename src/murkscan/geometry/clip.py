@@ -1,7 +1,6 @@
 """The part of a surface that lies in a box."""
 
 import numpy as np
-from trimesh.intersections import slice_faces_plane
 
 from ..types.arrays import Vector
 from ..types.mesh import Mesh
@@ -18,6 +17,8 @@ def clip_mesh(mesh: Mesh, low: Vector, high: Vector) -> Mesh:
     Returns:
         Positions and triangles alone; none where nothing of the surface lies in the box.
     """
+    from trimesh.intersections import slice_faces_plane
+
     corners = mesh.vertices[mesh.faces]
     near = (corners.min(axis=1) <= high) & (corners.max(axis=1) >= low)
     vertices, faces = mesh.vertices, mesh.faces[near.all(axis=1)]

@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-import trimesh
 from scipy.spatial import cKDTree
 
 from ..errors import InputError, NotEnoughData
@@ -95,6 +94,8 @@ class SurfacePoints:
         Raises:
             NotEnoughData: The mesh has no area.
         """
+        import trimesh
+
         shape = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)
         if not shape.area > 0:
             raise NotEnoughData("The mesh has no area, so there is nothing to align with.")

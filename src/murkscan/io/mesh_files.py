@@ -1,10 +1,9 @@
 """Meshes as PLY, STL, OBJ and GLB files, by trimesh."""
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import trimesh
 
 from ..errors import FormatError, InputError
 from ..types.arrays import Colours, FaceMask, Faces
@@ -12,6 +11,9 @@ from ..types.cloud import FARTHEST
 from ..types.mesh import Mesh
 from . import mesh_glb, mesh_obj, mesh_ply
 from .atomic import replacing
+
+if TYPE_CHECKING:
+    import trimesh
 
 _SUFFIXES = (".ply", ".stl", ".obj", ".glb")
 _GLB_FROM_OURS = np.array([1.0, -1.0, -1.0])
@@ -54,6 +56,8 @@ def load_mesh(path: Path) -> Mesh:
             holds costs no memory.
         FileNotFoundError: There is no such file.
     """
+    import trimesh
+
     kind = _kind(path)
     data = path.read_bytes()
     if kind in _STRIPPED:
@@ -92,11 +96,15 @@ def _kind(path: Path) -> str:
 
 
 def _as_stl(mesh: Mesh) -> bytes:
+    import trimesh
+
     made = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False, validate=False)
     return made.export(file_type="stl")
 
 
 def _as_glb(mesh: Mesh) -> bytes:
+    import trimesh
+
     colours = None if mesh.colours is None else _as_light(mesh.colours)
     made = trimesh.Trimesh(
         mesh.vertices * _GLB_FROM_OURS,
@@ -125,7 +133,7 @@ def _from_light(colours: Colours) -> Colours:
     return np.rint(255 * share).astype(np.uint8)[colours]
 
 
-def _find_colours(loaded: trimesh.Trimesh, kind: str) -> Colours | None:
+def _find_colours(loaded: "trimesh.Trimesh", kind: str) -> Colours | None:
     """Give the vertices' colours, where the file has them."""
     if loaded.visual.kind != "vertex":
         return None
@@ -133,7 +141,7 @@ def _find_colours(loaded: trimesh.Trimesh, kind: str) -> Colours | None:
     return _from_light(colours) if kind == "glb" else colours
 
 
-def _find_filled(loaded: trimesh.Trimesh, count: int) -> FaceMask | None:
+def _find_filled(loaded: "trimesh.Trimesh", count: int) -> FaceMask | None:
     """Give which triangles close a hole, where a PLY says so."""
     content = loaded.metadata.get("_ply_raw", {}).get("face", {}).get("data")
     names: Any = content if isinstance(content, dict) else getattr(content, "dtype", None)

@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-import trimesh
 
 from ..errors import NotEnoughData
 from ..geometry.clip import clip_mesh
@@ -45,6 +44,8 @@ def cut_out(mesh: Mesh, selection: Selection | None) -> Mesh:
     Raises:
         NotEnoughData: There is none.
     """
+    import trimesh
+
     if selection is None:
         return mesh
     mesh = _divide_large(mesh, selection)
@@ -64,6 +65,8 @@ def cut_out(mesh: Mesh, selection: Selection | None) -> Mesh:
 
 def _divide_large(mesh: Mesh, selection: Selection) -> Mesh:
     """Divide triangles near a part of space that could hold it between their corners."""
+    import trimesh
+
     low, high = selection.bounds
     size = high - low
     longest = max(float(size.min()) / _FINE, float(np.linalg.norm(size)) / _FINEST)

@@ -1,8 +1,6 @@
 """The distribution of deviations, as a picture."""
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 
 from ..types.arrays import ColourImage, Scalars
 
@@ -22,6 +20,9 @@ def draw_histogram(values: Scalars, *, title: str) -> ColourImage:
     Returns:
         A picture of 1280 × 800 px.
     """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
     known = values[np.isfinite(values)] * 1e3
     low, high = np.percentile(known, [_SHARE, 100 - _SHARE])
     half = max(abs(low), abs(high), 0.05)

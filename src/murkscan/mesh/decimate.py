@@ -1,6 +1,5 @@
 """Say the same surface with fewer triangles."""
 
-import fast_simplification
 import numpy as np
 from scipy.spatial import KDTree
 
@@ -29,6 +28,8 @@ def decimate(mesh: Mesh, *, faces: int) -> Mesh:
     References:
         Garland and Heckbert, Surface simplification using quadric error metrics, SIGGRAPH 1997.
     """
+    import fast_simplification
+
     if faces < _FEWEST:
         raise InputError(f"A surface needs at least {_FEWEST} triangles, got {faces}.")
     if len(mesh.faces) <= faces:

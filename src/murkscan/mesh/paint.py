@@ -2,7 +2,6 @@
 
 import abc
 
-import matplotlib as mpl
 import numpy as np
 
 from ..types.arrays import Colours, Scalars
@@ -33,6 +32,8 @@ def map_colours(values: Scalars, colour_map: str) -> Colours:
         values: One a vertex, in any unit.
         colour_map: Its name in matplotlib.
     """
+    import matplotlib as mpl
+
     low, high = np.percentile(values, [_SHARE, 100 - _SHARE])
     share = (values - low) / (high - low) if high > low else np.full(len(values), 0.5)
     return mpl.colormaps[colour_map](share, bytes=True)[:, :3]

@@ -6,7 +6,6 @@ from typing import final
 
 import numpy as np
 from jaxtyping import Float
-from scipy.optimize import nnls
 
 from ..errors import InputError
 from ..types.arrays import Scalars
@@ -111,6 +110,8 @@ def _fit_spread(medium: Medium, emission: Emission) -> Spread:
 
 def _fit_gaussians(density: Values) -> Scalars:
     """Fit a density, as it is looked at, by Gaussians, evenly well in proportion."""
+    from scipy.optimize import nnls
+
     variances = WIDTHS**2 + blur_of(_RADII)[:, None]
     bells = np.exp(-0.5 * _RADII[:, None] ** 2 / variances) / (2 * np.pi * variances)
     rows = bells / density[:, None]

@@ -7,10 +7,12 @@ from typing import Literal
 import numpy as np
 from jaxtyping import Float
 
-from ..types.arrays import Mask, Points
+from ..types.arrays import Mask, Points, Scalars
 
 Colours = Float[np.ndarray, "n 3"]
 """Red, green and blue from 0 to 1, one a row."""
+_STEPS = 256
+"""Colours of a map."""
 
 
 @dataclass(frozen=True)
@@ -49,3 +51,17 @@ class AbstractColours(abc.ABC):
             outside: Whether the viewer looks at the side that the camera saw.
             legend: What `legend` gave for the whole surface.
         """
+
+
+def look_up_colours(values: Scalars, legend: Legend) -> Colours:
+    """Give values, in the legend's unit, the colours that the legend shows for them.
+
+    Args:
+        values: Beyond the legend's ends they get its last colour; NaN gets that of the low end.
+        legend: Their range and colour map.
+    """
+    from matplotlib import colormaps
+
+    table = colormaps[legend.colour_map](np.arange(_STEPS))[:, :3].astype(np.float32)
+    share = (values - legend.low) / (legend.high - legend.low)
+    return table[np.clip(np.nan_to_num(share) * _STEPS, 0, _STEPS - 1).astype(np.intp)]

@@ -3,11 +3,10 @@
 from dataclasses import dataclass
 from typing import final
 
-import matplotlib as mpl
 import numpy as np
 
 from ..types.arrays import Mask, Points, Scalars
-from .base import AbstractColours, Colours, Legend
+from .base import AbstractColours, Colours, Legend, look_up_colours
 
 _COLOUR_MAP = "viridis_r"
 _SHARE = 0.5
@@ -43,8 +42,7 @@ class Depth(AbstractColours):
         """Give each depth its colour; both sides of the surface look alike."""
         if legend is None:
             return np.zeros((len(points), 3))
-        share = (self._depths(points) - legend.low) / (legend.high - legend.low)
-        return mpl.colormaps[legend.colour_map](share)[:, :3]
+        return look_up_colours(self._depths(points), legend)
 
     def _depths(self, points: Points) -> Scalars:
         """Count them [mm]."""

@@ -1,20 +1,26 @@
 """The pictures that every scan gets."""
 
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 
 from ..types.arrays import ColourImage
 from ..types.cloud import PointCloud
 from ..types.mesh import Mesh
 from ..types.trajectory import Trajectory
+from .base import AbstractColours
 from .depth import Depth
-from .render import render
-from .views import standard_views
+from .plain import Plain
+from .render import draw
+from .subject import Subject
+from .views import View, standard_views
 
 PICTURES = (
     *("isometric", "isometric-depth", "front", "front-depth"),
     *("back", "left", "right", "top", "bottom"),
 )
 """Names of the pictures, in the order to show them."""
+_THREADS = 2
+"""Pictures that are drawn at once; each takes 0.2 GB while it is."""
 
 
 def draw_pictures(
@@ -36,11 +42,21 @@ def draw_pictures(
     Raises:
         NotEnoughData: There is nothing to draw.
     """
+    jobs = list(_pictures(trajectory))
+    subject = Subject.of(surface)
+    # Letters are written here, since their library is made for one thread.
+    with ThreadPoolExecutor(_THREADS) as pool:
+        drawings = pool.map(lambda job: draw(subject, job[1], job[2], size), jobs)
+        for (name, _, _), drawing in zip(jobs, drawings, strict=True):
+            yield name, drawing.write()
+
+
+def _pictures(trajectory: Trajectory | None) -> Iterator[tuple[str, View, AbstractColours]]:
+    """Name each picture, and say from where and in which colours it is drawn."""
     views = standard_views(trajectory)
     front = next(view for view in views if view.name == "front")
     x, y, z = (float(part) for part in front.view_from_world[2])
     for view in views:
-        yield view.name, render(surface, view, size=size)
+        yield view.name, view, Plain()
         if view.name in ("isometric", "front"):
-            by_depth = render(surface, view, colours=Depth((x, y, z), front.start), size=size)
-            yield f"{view.name}-depth", by_depth
+            yield f"{view.name}-depth", view, Depth((x, y, z), front.start)

@@ -23,4 +23,4 @@ class Plain(AbstractColours):
 
     def paint(self, points: Points, outside: Mask, legend: Legend | None) -> Colours:
         """Tell the two sides apart."""
-        return np.where(outside[:, None], _OUTSIDE, _INSIDE)
+        return np.array([_INSIDE, _OUTSIDE], np.float32)[outside.astype(np.intp)]

@@ -1,24 +1,38 @@
 """Draw a surface or a cloud."""
 
-import cv2
+from dataclasses import dataclass
+
 import numpy as np
 
-from ..errors import InputError, NotEnoughData
-from ..types.arrays import ColourImage, Points
+from .._kernels.rasterise import average_samples, place_samples
+from ..types.arrays import ColourImage
 from ..types.cloud import PointCloud
 from ..types.mesh import Mesh
 from .base import AbstractColours, Legend
 from .light import light_up
 from .plain import Plain
-from .splats import splat_points
-from .surface import cast_mesh
+from .subject import Subject
 from .views import View
-from .window import Relief, Window
+from .window import SAMPLES, Relief, Window
 from .writing import write_on
 
 _BACKGROUND = 0.985
-_EVEN = 0.5
+_EVEN = np.float32(0.5)
 """Share of the light that falls evenly where colours have to be read off a scale."""
+
+
+@dataclass(frozen=True, eq=False)
+class Drawing:
+    """A picture before anything is written on it."""
+
+    image: ColourImage
+    view: View
+    window: Window
+    legend: Legend | None
+
+    def write(self) -> ColourImage:
+        """Write the view's name, the scales and the axes on it."""
+        return write_on(self.image, self.view, self.window, self.legend)
 
 
 def render(
@@ -43,44 +57,35 @@ def render(
         NotEnoughData: There is nothing to draw.
         InputError: A point is not finite, or the picture is below 64 x 64 pixels.
     """
-    world = surface.vertices if isinstance(surface, Mesh) else surface.points
-    _require_something(surface, world)
-    colours = Plain() if colours is None else colours
-    legend = colours.legend(world)
-    points = world @ view.view_from_world.T
+    return draw(Subject.of(surface), view, colours or Plain(), size).write()
+
+
+def draw(subject: Subject, view: View, colours: AbstractColours, size: tuple[int, int]) -> Drawing:
+    """Draw what is seen from one side; several threads may do so at once."""
+    legend = colours.legend(subject.points)
+    points = subject.points @ view.view_from_world.T
     window = Window.around(points, size, with_bar=legend is not None)
-    samples = window.as_samples(points)
-    if isinstance(surface, Mesh):
-        relief = cast_mesh(surface, samples, window)
-    else:
-        normals = surface.normals @ view.view_from_world.T
-        relief = splat_points(samples, normals, window)
-    return write_on(_develop(relief, view, window, colours, legend), view, window, legend)
-
-
-def _require_something(surface: Mesh | PointCloud, points: Points) -> None:
-    if len(points) == 0 or (isinstance(surface, Mesh) and len(surface.faces) == 0):
-        raise NotEnoughData("There is nothing to draw: the surface has no points or no triangles.")
-    broken = len(points) - int(np.isfinite(points).all(axis=1).sum())
-    if broken:
-        raise InputError(
-            f"{broken} of {len(points)} points to draw are not finite; leave them out."
-        )
+    relief = subject.look(view, window.as_samples(points), window)
+    return Drawing(_develop(relief, view, window, colours, legend), view, window, legend)
 
 
 def _develop(
     relief: Relief, view: View, window: Window, colours: AbstractColours, legend: Legend | None
 ) -> ColourImage:
     """Light and colour the samples, and make pixels of them."""
-    rows, columns = np.nonzero(relief.seen)
-    at = np.stack([columns, rows, relief.depth[rows, columns]], axis=1)
-    in_view = (at - np.array([*window.centre, 0.0])) / window.scale
-    outside = relief.outside[rows, columns]
-    paint = colours.paint(in_view @ view.view_from_world, outside, legend)
-    light = light_up(relief)[rows, columns]
+    points = np.empty((len(relief.seen), 3))
+    place_samples(relief.seen, relief.depth, _world_from_samples(relief, view, window), points)
+    paint = colours.paint(points, relief.outside, legend).astype(np.float32, copy=False)
+    light = light_up(relief)
     if legend is not None:
         light = _EVEN + (1 - _EVEN) * light
-    samples = np.full((*relief.depth.shape, 3), _BACKGROUND, np.float32)
-    samples[rows, columns] = np.clip(paint * light[:, None], 0, 1)
-    picture = cv2.resize(samples, window.size, interpolation=cv2.INTER_AREA)
-    return np.rint(picture * 255).astype(np.uint8)
+    picture = np.empty((window.size[1], window.size[0], 3), np.uint8)
+    average_samples(relief.seen, paint, light, _BACKGROUND, SAMPLES, picture)
+    return picture
+
+
+def _world_from_samples(relief: Relief, view: View, window: Window) -> np.ndarray:
+    """Give the affine map from column, row and the relief's depth to the world, 3 x 4."""
+    world_from_view = view.view_from_world.T / window.scale
+    start = np.array([-window.centre[0], -window.centre[1], relief.start])
+    return np.column_stack([world_from_view, world_from_view @ start])

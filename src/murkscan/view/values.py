@@ -4,12 +4,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import final
 
-import matplotlib as mpl
 import numpy as np
 from scipy.spatial import KDTree
 
 from ..types.arrays import Mask, Points, Scalars
-from .base import AbstractColours, Colours, Legend
+from .base import AbstractColours, Colours, Legend, look_up_colours
 from .model import usual_spacing
 
 _COLOUR_MAP = "RdBu_r"
@@ -53,9 +52,8 @@ class SignedValues(AbstractColours):
         most = _REACH * usual_spacing(self.at)
         _, nearest = self._tree.query(points, distance_upper_bound=most)
         values = np.append(self.values, np.nan)[nearest] * 1e3
-        share = (values - legend.low) / (legend.high - legend.low)
-        colours = mpl.colormaps[legend.colour_map](np.nan_to_num(share))[:, :3]
-        return np.where(np.isfinite(values)[:, None], colours, _UNKNOWN)
+        colours = look_up_colours(values, legend)
+        return np.where(np.isfinite(values)[:, None], colours, np.float32(_UNKNOWN))
 
     @cached_property
     def _tree(self) -> KDTree:

@@ -6,7 +6,6 @@ from functools import lru_cache
 from importlib.resources import files
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 from markupsafe import Markup
@@ -192,6 +191,8 @@ def _range(values: Scalars, *, is_signed: bool) -> list[float]:
 
 def _as_texture(name: str) -> str:
     """Give the 256 colours of a map, three bytes each, in base64."""
+    import matplotlib as mpl
+
     colours = np.rint(mpl.colormaps[name](np.arange(256))[:, :3] * 255).astype(np.uint8)
     return base64.b64encode(colours.tobytes()).decode()
 

@@ -3,14 +3,14 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Float32, Int, Int32
 
 from ..errors import InputError
-from ..types.arrays import Points
+from ..types.arrays import Mask, Normals, Points
 
-Depths = Float[np.ndarray, "h w"]
-Directions2D = Float[np.ndarray, "h w 3"]
-Seen = Bool[np.ndarray, "h w"]
+Depths = Float32[np.ndarray, "h w"]
+Owners = Int32[np.ndarray, "h w"]
+Cells = Int[np.ndarray, "n 2"]
 
 SAMPLES = 2
 """Samples a pixel along each side."""
@@ -57,6 +57,16 @@ class Window:
         """Give points of the view frame [m] as samples u, v and depth in the same unit."""
         return points * self.scale + np.array([*self.centre, 0.0])
 
+    def empty_buffers(self, points: Points) -> tuple[Depths, Owners, float]:
+        """Make a picture's depths and owners before anything is seen, and where depth starts.
+
+        Args:
+            points: What will be seen, in samples, with its depth.
+        """
+        width, height = self.num_samples
+        depth = np.full((height, width), np.inf, np.float32)
+        return depth, np.zeros((height, width), np.int32), float(np.floor(points[:, 2].min()))
+
     @property
     def num_samples(self) -> tuple[int, int]:
         """Width and height in samples."""
@@ -65,16 +75,15 @@ class Window:
 
 @dataclass(frozen=True, eq=False)
 class Relief:
-    """What each sample of the picture shows, in the view frame."""
+    """What the samples of a picture show, in the view frame."""
 
     depth: Depths
-    """Depth [samples]; NaN where there is nothing."""
-    normals: Directions2D
-    """Unit normals, turned to the viewer."""
-    outside: Seen
-    """Whether the viewer looks at the side that the camera saw."""
-
-    @property
-    def seen(self) -> Seen:
-        """Tell where there is something."""
-        return np.isfinite(self.depth)
+    """Depth [samples] beyond the start; inf where there is nothing."""
+    start: float
+    """Depth of what is nearest to the viewer [samples]: single precision counts from there."""
+    seen: Cells
+    """Row and column of each sample that shows something."""
+    normals: Normals
+    """Unit normals of those, turned to the viewer."""
+    outside: Mask
+    """Whether the viewer looks there at the side that the camera saw."""

@@ -1,18 +1,17 @@
 """What is written on a picture: its name, a scale bar, a colour bar, the axes."""
 
 import math
+from typing import TYPE_CHECKING
 
-import matplotlib as mpl
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.colors import Normalize
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from ..types.arrays import ColourImage
 from .base import Legend
 from .views import View
 from .window import SAMPLES, Window
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _INK = "#202428"
 _AXES = {"x": "#c0392b", "y": "#2e7d32", "z": "#1f5fa8"}
@@ -35,6 +34,9 @@ def write_on(image: ColourImage, view: View, window: Window, legend: Legend | No
     Returns:
         The picture with the writing on it.
     """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
     width, height = window.size
     figure = Figure(figsize=(width / _DPI, height / _DPI), dpi=_DPI)
     canvas = FigureCanvasAgg(figure)
@@ -49,7 +51,9 @@ def write_on(image: ColourImage, view: View, window: Window, legend: Legend | No
     return np.ascontiguousarray(np.asarray(canvas.buffer_rgba())[..., :3])  # type: ignore[no-untyped-call]
 
 
-def _write_scale(figure: Figure, window: Window, points: float) -> None:
+def _write_scale(figure: "Figure", window: Window, points: float) -> None:
+    from matplotlib.lines import Line2D
+
     width, _ = window.size
     pixels_a_metre = window.scale / SAMPLES
     length = round_down(_LONGEST_BAR * width / pixels_a_metre)
@@ -72,8 +76,10 @@ def round_down(value: float) -> float:
     return float(f"{step * power:.1g}")
 
 
-def _write_axes(figure: Figure, view: View, window: Window, points: float) -> None:
+def _write_axes(figure: "Figure", view: View, window: Window, points: float) -> None:
     """Draw the world's axes as the view shows them; one that points at the viewer is a dot."""
+    from matplotlib.lines import Line2D
+
     width, height = window.size
     length = 1.35 * _TEXT * height
     middle = np.array([width - 3.6 * length, 2.0 * length])
@@ -91,9 +97,12 @@ def _write_axes(figure: Figure, view: View, window: Window, points: float) -> No
         )
 
 
-def _write_colours(figure: Figure, legend: Legend, points: float) -> None:
+def _write_colours(figure: "Figure", legend: Legend, points: float) -> None:
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+
     axes = figure.add_axes((0.875, 0.27, 0.022, 0.58))
-    colours = mpl.cm.ScalarMappable(Normalize(legend.low, legend.high), legend.colour_map)
+    colours = ScalarMappable(Normalize(legend.low, legend.high), legend.colour_map)
     bar = figure.colorbar(colours, cax=axes)
     if legend.top == "low":
         bar.ax.invert_yaxis()

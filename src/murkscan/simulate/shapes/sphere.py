@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from typing import final
 
 import numpy as np
-from trimesh import creation
 
 from ...types.mesh import Mesh
 from .base import AbstractShape, check_sizes
@@ -31,5 +30,7 @@ class Sphere(AbstractShape):
 
     def mesh(self) -> Mesh:
         """Make a closed surface of triangles of nearly one size."""
+        from trimesh import creation
+
         ball = creation.icosphere(subdivisions=_HALVINGS, radius=self.radius)
         return Mesh(np.array(ball.vertices, float), np.array(ball.faces, np.int64))
