@@ -55,9 +55,10 @@ class Found:
 
     def judge(self, names: Sequence[str]) -> dict[str, Judged]:
         """Judge finders."""
-        drawing = load_drawing(self.shot.name)
+        height, width = self.frames[0].image.shape
+        length, num_lines = (width, height) if self.axis == "x" else (height, width)
+        drawing = load_drawing(self.shot.name, num_lines)
         lines: dict[str, Lines] = {name: by_line(self.rows(name)) for name in self.stripes}
-        length = self.frames[0].image.shape[1 if self.axis == "x" else 0]
         return {
             name: judge(self.rows(name), tell_truth(drawing, name, lines), length=length)
             for name in names

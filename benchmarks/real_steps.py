@@ -28,7 +28,7 @@ def shares_of_steps(shot: Shot, rows: np.ndarray) -> Shares | None:
     """Measure how much of each piece was found, in the recording of the steps alone."""
     if shot.name != _SHOT:
         return None
-    drawing = load_drawing(_SHOT)
+    drawing = load_drawing(_SHOT, shot.rig.camera.size[0])
     of_piece = _piece_of(rows, drawing.pieces)
     shares = (
         100 * len(set(rows[of_piece == k, 1])) / len(piece)

@@ -6,6 +6,7 @@ is judged say together; where they do not agree, it is the drawing itself.
 """
 
 import tomllib
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -20,7 +21,10 @@ AGREE = 1.5
 """Distance up to which two finders agree, and a found centre is right [px]."""
 DRAWN = 2.5
 """Distance from the drawing up to which a centre is right where no two finders agree [px]."""
-_CORRIDOR = 6.0
+_END = 3
+"""Scan lines to either side of an end of the line that are not judged: the eye reads ends to a few,
+and the picture's blur carries light over them."""
+_CORRIDOR = 4.0
 """Distance from the drawing up to which an agreed centre is the drawn line's [px]."""
 _FAMILIES = {
     "threshold-skeleton": "thinning",
@@ -82,8 +86,8 @@ class Drawing:
     """The same by piece: scan line and position of each of its centres."""
     unclear: Spans
     """Where the eye cannot tell, or what is seen is neither the line nor anything else."""
-    covers_all: bool
-    """Whether there is nothing wherever nothing is drawn; else what two finders agree on counts."""
+    wide: dict[tuple[int, int], float]
+    """How near a centre must be where the band is wide [px]."""
 
 
 @cache
@@ -91,25 +95,44 @@ def _table() -> dict[str, Any]:
     return tomllib.loads(_TABLE.read_text("utf-8"))
 
 
-def load_drawing(name: str) -> Drawing:
-    """Load what was drawn into a recording."""
+def load_drawing(name: str, num_lines: int) -> Drawing:
+    """Load what was drawn into a recording of a number of scan lines."""
     table = _table()[name]
     lines: Lines = {}
     pieces: list[np.ndarray] = []
-    for entry in table.get("line", []):
-        first, last = entry["frames"]
-        points = np.array(entry["points"], float)
-        at = np.arange(np.ceil(points[0, 0]), np.floor(points[-1, 0]) + 1)
-        pieces.append(np.stack([at, np.interp(at, *points.T)], axis=1))
-        for frame in range(first, last + 1):
-            for line, position in zip(at, np.interp(at, *points.T), strict=True):
-                lines.setdefault((frame, int(line)), []).append(float(position))
     unclear: Spans = {}
+    for entry in table["line"]:
+        points = np.array(entry["points"], float)
+        at = np.arange(points[0, 0], points[-1, 0] + 1)
+        pieces.append(np.stack([at, np.interp(at, *points.T)], axis=1))
+        for frame in _between(entry["frames"]):
+            for line, position in pieces[-1]:
+                lines.setdefault((frame, int(line)), []).append(float(position))
+            for line, position in _ends(pieces[-1], num_lines):
+                span = (position - _CORRIDOR, position + _CORRIDOR)
+                unclear.setdefault((frame, line), []).append(span)
     for box in table.get("unclear", []):
-        for frame in range(box["frames"][0], box["frames"][1] + 1):
-            for line in range(box["lines"][0], box["lines"][1] + 1):
-                unclear.setdefault((frame, line), []).append(tuple(box["positions"]))
-    return Drawing(lines, pieces, unclear, table["covers_all"])
+        for cell in _cells(box):
+            unclear.setdefault(cell, []).append(tuple(box["positions"]))
+    wide = {cell: box["within"] for box in table.get("wide", []) for cell in _cells(box)}
+    return Drawing(lines, pieces, unclear, wide)
+
+
+def _between(span: list[int]) -> range:
+    return range(span[0], span[1] + 1)
+
+
+def _cells(box: dict[str, list[int]]) -> list[tuple[int, int]]:
+    return [(frame, line) for frame in _between(box["frames"]) for line in _between(box["lines"])]
+
+
+def _ends(piece: np.ndarray, num_lines: int) -> Iterator[tuple[int, float]]:
+    """Give scan lines and positions around those ends that lie inside the picture."""
+    first, last = (int(line) for line in piece[[0, -1], 0])
+    if first > 0:
+        yield from ((first + k, float(piece[0, 1])) for k in range(-_END, _END + 1))
+    if last < num_lines - 1:
+        yield from ((last + k, float(piece[-1, 1])) for k in range(-_END, _END + 1))
 
 
 def is_unclear(rows: np.ndarray, unclear: Spans) -> np.ndarray:
@@ -131,30 +154,20 @@ def tell_truth(drawing: Drawing, finder: str, found: dict[str, Lines]) -> Truth:
     """
     sides = [[found[name] for name in side] for side in _WITNESSES[_FAMILIES[finder]]]
     rows: list[tuple[float, ...]] = []
-    unclear = dict(drawing.unclear)
     for cell, positions in drawing.lines.items():
-        agreed, _ = _agreed(cell, sides)
-        rows += [(*cell, *_place(position, agreed)) for position in positions]
-    if not drawing.covers_all:
-        seen = set().union(*(lines.keys() for side in sides for lines in side))
-        for cell in seen - drawing.lines.keys() - unclear.keys():
-            agreed, is_open = _agreed(cell, sides)
-            rows += [(*cell, position, AGREE) for position in agreed]
-            if is_open:
-                unclear[cell] = [(-np.inf, np.inf)]
+        agreed = _agreed(cell, sides)
+        for position in positions:
+            place, within = _place(position, agreed)
+            rows.append((*cell, place, max(within, drawing.wide.get(cell, 0.0))))
     true = np.array(sorted(rows)).reshape(-1, 4)
-    return Truth(true[~is_unclear(true, unclear)], unclear)
+    return Truth(true[~is_unclear(true, drawing.unclear)], drawing.unclear)
 
 
-def _agreed(cell: tuple[int, int], sides: list[list[Lines]]) -> tuple[list[float], bool]:
-    """Give the centres that both sides found, and whether they agree on none of several."""
+def _agreed(cell: tuple[int, int], sides: list[list[Lines]]) -> list[float]:
+    """Give the centres of a scan line that both sides found."""
     one, other = ([p for lines in side for p in lines.get(cell, ())] for side in sides)
-    agreed: list[float] = []
-    for p in sorted(one):
-        near = [q for q in other if abs(p - q) < AGREE]
-        if near and not (agreed and p - agreed[-1] < AGREE):
-            agreed.append((p + min(near, key=lambda q, p=p: abs(p - q))) / 2)
-    return agreed, not agreed and bool(one or other)
+    pairs = ((p, min(other, key=lambda q, p=p: abs(p - q))) for p in one if other)
+    return [(p + q) / 2 for p, q in pairs if abs(p - q) < AGREE]
 
 
 def _place(drawn: float, agreed: list[float]) -> tuple[float, float]:
