@@ -26,8 +26,8 @@ NOTE = """
 Small sound files of every kind that murkscan reads (videos, folders of pictures, clouds, meshes,
 rigs, scenes, logs of poses, and all that a scan leaves in its folder: JSON, Parquet, CSV, PLY),
 each changed at random in one to four ways: bytes turned over, cut, dropped, repeated; numbers
-replaced by odd ones, in binary and in text; lines repeated, dropped and exchanged. Each is read as a
-command would. A crash is a traceback, or the death of the process; memory is the peak of a process
+replaced by odd ones, in binary and in text; lines repeated, dropped and exchanged. Each is read as
+a command would. A crash is a traceback, or the death of a process; memory is the peak of a process
 that has the whole program in it.
 """
 

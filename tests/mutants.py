@@ -18,12 +18,11 @@ from pathlib import Path
 import av
 import numpy as np
 
-from murkscan import ConstantStep, GrayGravity, open_recording, scan
+from murkscan import ConstantStep, GrayGravity, open_recording, scan, simulate
 from murkscan.errors import MurkscanError
 from murkscan.io.cloud_files import iterate_cloud_file, writing_cloud_file
 from murkscan.io.images import write_image
 from murkscan.io.mesh_files import load_mesh, save_mesh
-from murkscan.io.parquet import load_true_stripe
 from murkscan.io.poses import load_poses, save_poses
 from murkscan.io.rig_toml import load_rig
 from murkscan.project import Project
@@ -97,8 +96,7 @@ def make_seeds(folder: Path) -> None:
     (folder / "rig" / "rig.toml").write_text(RIG)
     (folder / "scene").mkdir()
     (folder / "scene" / "scene.toml").write_text(read_scene("hull")[0])
-    rigs = Path(inspect.getfile(load_scene)).parent / "scenes" / "rigs"
-    shutil.copytree(rigs, folder / "scene" / "rigs")
+    shutil.copytree(Path(simulate.__file__).parent / "scenes" / "rigs", folder / "scene" / "rigs")
     _write_logs(folder / "poses")
     stairs = folder / "recording"
     for number in range(8):
@@ -127,7 +125,6 @@ def read(kind: str, path: Path) -> object:
         "rig": load_rig,
         "scene": load_scene,
         "poses": load_poses,
-        "truth": load_true_stripe,
     }
     return readers[kind](path)
 
