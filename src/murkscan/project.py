@@ -228,6 +228,21 @@ class Project:
         for file in sorted(folder.glob("*.parquet")):
             yield load_profile(file)
 
+    def load_placed_parts(self) -> Iterator[Profile]:
+        """Read the profiles of a finished triangulate as far as a finished motion has their poses.
+
+        Part by part in order of frames, as `load_profile_parts`.
+        """
+        trajectory = self.load_trajectory()
+        for part in self.load_profile_parts():
+            yield part[trajectory.has(part.time)]
+
+    def load_placed_times(self) -> FrameTimes:
+        """Read which frames have a pose, with or without a stripe."""
+        frames, trajectory = self.load_frame_times(), self.load_trajectory()
+        placed = trajectory.has(frames.time)
+        return FrameTimes(frames.frame[placed], frames.time[placed])
+
     def load_profile(self) -> Profile:
         """Read all profiles of a finished triangulate, in order of frames."""
         return Profile.concatenate(list(self.load_profile_parts()))

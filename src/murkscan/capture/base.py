@@ -44,6 +44,11 @@ class AbstractRecording(abc.ABC):
     """How many frames the recording claims, for a progress bar; None where it does not say."""
 
     @property
+    @abc.abstractmethod
+    def span(self) -> tuple[float, float]:
+        """Give the times of the first and the last picture [s]; the same where unknown."""
+
+    @property
     def fields_per_picture(self) -> int:
         """2 where the recording is interlaced and each field is a frame, otherwise 1."""
         return 1 if self.order == "progressive" else 2

@@ -68,6 +68,11 @@ class ImageFolder(AbstractRecording):
     wavelength: float
     """Wavelength of the laser, for which colours are weighted [m]."""
 
+    @property
+    def span(self) -> tuple[float, float]:
+        """Give the times of the first and of the last picture [s]."""
+        return self.times[0], self.times[-1]
+
     def frames(
         self, start: int = 0, *, on_skip: Callable[[Skip], None] = ignore_skip
     ) -> Iterator[Frame]:

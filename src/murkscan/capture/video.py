@@ -41,6 +41,13 @@ class Video(AbstractRecording):
     wavelength: float
     """Wavelength of the laser, for which colours are weighted [m]."""
 
+    @property
+    def span(self) -> tuple[float, float]:
+        """Give the times of the first and of the last picture [s], as the file claims."""
+        last = max((self.num_frames or 0) // self.fields_per_picture - 1, 0)
+        start = 0.0 if self.clock.rate else self.clock.start
+        return start, start + last * self.clock.period
+
     def frames(
         self, start: int = 0, *, on_skip: Callable[[Skip], None] = ignore_skip
     ) -> Iterator[Frame]:

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from ..capture import AbstractRecording
     from ..motion import AbstractMotion
     from ..types.rig import Rig
+    from ..types.trajectory import Trajectory
 
 
 Settings = Annotated[tuple[str, ...], Parameter(name="--set", negative=())]
@@ -37,6 +38,15 @@ class RecordingFlags:
         return open_recording(path, wavelength=rig.wavelength, fps=self.fps, fields=self.fields)
 
 
+_OF_LOGS = {
+    "start_time": "0",
+    "time_offset_s": 0.0,
+    "gap_s": 0.5,
+    **dict.fromkeys(("log_time", "log_quaternion", "log_axes", "log_angles")),
+}
+"""Flags that mean something to a log of poses only, and what they are unless given."""
+
+
 @Parameter(name="*")
 @dataclass(frozen=True)
 class MotionFlags:
@@ -47,17 +57,27 @@ class MotionFlags:
     step_mm: float | None = None
     """Constant step [mm] from one recorded picture to the next; negative for the other way."""
     poses: Path | None = None
-    """Log of poses: CSV with time_s,x_m,y_m,z_m,qw,qx,qy,qz, or TUM."""
+    """Log of poses: CSV with time_s,x_m,y_m,z_m,qw,qx,qy,qz, or northing, easting, depth, roll,
+    pitch, heading; EuRoC, rostopic echo -p, or TUM."""
     along: Literal["x", "y", "z"] | None = None
     """Camera axis of a constant speed or step; the laser's axis unless said."""
     start_time: str = "0"
     """When the video began, by the log's clock: seconds, or ISO 8601."""
     time_offset_s: float = 0.0
     """Added to recording times [s]."""
+    gap_s: float = 0.5
+    """Longest time between two poses of the log that is bridged [s]."""
+    log_time: Literal["s", "ms", "us", "ns"] | None = None
+    """What the log's times count; found from the column's name or the size of the numbers."""
+    log_quaternion: Literal["wxyz", "xyzw"] | None = None
+    """Order of the quaternion in a log whose columns have no names; xyzw, as TUM, unless said."""
+    log_axes: Literal["ned", "enu"] | None = None
+    """Axes by which the log's roll, pitch and heading turn: north-east-down unless said."""
+    log_angles: Literal["deg", "rad"] | None = None
+    """Unit of the log's roll, pitch and heading; found from the column's name, else degrees."""
 
     def make(self, rig: "Rig", laser: int) -> "AbstractMotion":
         """Make the motion that these flags describe."""
-        from ..io.poses import load_poses
         from ..motion import ConstantSpeed, ConstantStep, PoseLog
         from ..types.pose import Pose
 
@@ -77,12 +97,33 @@ class MotionFlags:
         assert self.poses is not None
         mount = rig.vehicle_from_camera or Pose.identity()
         start = read_start_time(self.start_time)
-        log = load_poses(self.poses)
-        return PoseLog(log, mount, start, self.time_offset_s, name=str(self.poses))
+        return PoseLog(
+            self._read_log(self.poses),
+            mount,
+            start,
+            self.time_offset_s,
+            self.gap_s,
+            name=str(self.poses),
+        )
+
+    def _read_log(self, path: Path) -> "Trajectory":
+        """Read the log of poses, and say how it was understood."""
+        from ..io.pose_reading import PoseConvention
+        from ..io.poses import read_pose_log
+
+        said = (self.log_time, self.log_quaternion, self.log_axes, self.log_angles)
+        read = read_pose_log(path, PoseConvention(*said))
+        print(f"poses      {path}: {len(read.log.times):,}, {read.understood}")
+        if read.left_out:
+            print(f"  note: {read.tell_left_out()}")
+        return read.log
 
     def _check_effect(self) -> None:
-        if self.poses is None and (self.start_time != "0" or self.time_offset_s != 0):
-            raise InputError("--start-time and --time-offset-s go with --poses; leave them out.")
+        if self.poses is None:
+            for name, default in _OF_LOGS.items():
+                if getattr(self, name) != default:
+                    flag = f"--{name.replace('_', '-')}"
+                    raise InputError(f"{flag} goes with --poses; leave it out.")
         if self.poses is not None and self.along is not None:
             raise InputError("--along goes with --speed-mm-s or --step-mm; leave it out.")
 
@@ -98,16 +139,15 @@ def read_numbers(text: str, count: int) -> list[float] | None:
 
 def read_start_time(text: str) -> float:
     """Read --start-time [s]: seconds, or ISO 8601, in UTC unless it says otherwise."""
-    from datetime import UTC, datetime
+    from ..io.clock_times import read_moment
 
     try:
         return float(text)
     except ValueError:
         pass
     try:
-        moment = datetime.fromisoformat(text)
-    except ValueError as error:
+        return read_moment(text)
+    except (ValueError, OverflowError) as error:
         raise InputError(
             f"--start-time {text!r} is neither seconds nor a time such as 2026-05-01T09:30:00Z."
         ) from error
-    return (moment if moment.tzinfo else moment.replace(tzinfo=UTC)).timestamp()

@@ -53,7 +53,7 @@ def when_reported(out: Path) -> int | None:
 
 def print_summary(project: "Project") -> None:
     """Say what a whole scan has made, and where it lies."""
-    found = project.finished("extract").counts()
+    found, moved = (project.finished(name).counts() for name in ("extract", "motion"))
     cloud, mesh = (project.finished(name).counts() for name in ("cloud", "mesh"))
     root = project.root
     print(
@@ -62,6 +62,7 @@ def print_summary(project: "Project") -> None:
     )
     print_skips(found["skips"])
     print_remarks(found)
+    print_remarks(moved)
     print(f"points     {cloud['points']:,}, {cloud['outliers']:,} outliers taken out")
     print(f"triangles  {mesh['faces']:,}")
     if not mesh["faces"]:

@@ -30,11 +30,20 @@ class AbstractMotion(abc.ABC):
             pictures: Number of the recorded picture of each frame; its second field is at half.
 
         Returns:
-            The poses at just these times.
+            The poses at just these times, but for frames of which the motion says nothing.
 
         Raises:
-            InputError: The settings say nothing about some of the times.
+            InputError: The settings say nothing about more than half of the times.
         """
+
+    def remarks(self, times: Scalars) -> tuple[str, ...]:
+        """Tell what was odd, such as frames that have no pose, in sentences.
+
+        Args:
+            times: As for `follow`.
+        """
+        del times
+        return ()
 
 
 def follow_line(times: Scalars, distances: Scalars, along: Direction) -> Trajectory:

@@ -63,7 +63,7 @@ def build_cloud(
     stage.begin()
     trajectory = project.load_trajectory()
     axis = rig.lasers[project.finished("extract").key["settings"]["laser"]].axis
-    blocks = cut_blocks(project.load_profile_parts(), block=block)
+    blocks = cut_blocks(project.load_placed_parts(), block=block)
     in_files = frames or project.finished("extract").counts()["frames"] <= FRAME_FILES
     found: Counter[str] = Counter({rule.cause: 0 for rule in rules})
     points = 0

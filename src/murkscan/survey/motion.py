@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from ..capture import AbstractRecording
 from ..errors import InputError
 from ..motion import AbstractMotion
 from ..project import Project
@@ -15,7 +16,8 @@ def follow_motion(project: Project, motion: AbstractMotion) -> dict[str, Any]:
     """Run the motion stage.
 
     Returns:
-        The duration [s], the length of the path [m] and the number of poses.
+        The duration [s], the length of the path [m], the number of poses, the frames that have
+        none, and remarks on them.
 
     Raises:
         MissingResult: The extract stage has not been finished.
@@ -39,12 +41,32 @@ def follow_motion(project: Project, motion: AbstractMotion) -> dict[str, Any]:
     project.save_trajectory(trajectory)
     steps = np.linalg.norm(np.diff(trajectory.positions, axis=0), axis=1)
     result = {
-        "poses": len(times),
+        "poses": len(trajectory.times),
+        "frames_without_pose": len(times) - len(trajectory.times),
         "duration_s": float(np.ptp(times.time)),
         "length_m": float(steps.sum()),
+        "remarks": list(motion.remarks(times.time)),
     }
     stage.finish(result, since=since)
     return result
+
+
+_PROBES = 1000
+"""Times of a recording at which a motion is asked beforehand, spread over it."""
+
+
+def check_motion(recording: AbstractRecording, motion: AbstractMotion) -> None:
+    """Refuse a motion that does not fit a recording's times, before anything is extracted.
+
+    Raises:
+        InputError: The recording has no times and the motion needs them, or they lie outside its
+            log.
+    """
+    check_times(recording.path, motion, is_timed=recording.is_timed)
+    begin, end = recording.span
+    if begin < end:
+        times = np.linspace(begin, end, _PROBES)
+        motion.follow(times, np.arange(_PROBES, dtype=float))
 
 
 def check_times(recording: object, motion: AbstractMotion, *, is_timed: bool) -> None:

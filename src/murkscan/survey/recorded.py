@@ -24,14 +24,15 @@ def tell_recording(project: Project, scan: dict[str, Any]) -> Recorded:
         scan: Its scan.json.
     """
     recording, counts = scan["recording"], project.finished("extract").counts()
-    motion = project.finished("motion").key["settings"]["motion"]
+    moved = project.finished("motion")
+    motion, odd = moved.key["settings"]["motion"], moved.counts().get("remarks", [])
     return Recorded(
         name=name_recording(Path(recording["path"])),
         size=tuple(recording["size"]),
         fields_per_picture=recording["fields_per_picture"],
         is_timed=recording["is_timed"],
         skips=[tuple(skip) for skip in counts["skips"]],
-        remarks=counts.get("remarks", []),
+        remarks=[*counts.get("remarks", []), *odd],
         attenuation=attenuation_of(counts),
         path=recording["path"],
         began=when_began(project.load_frame_times(), motion),

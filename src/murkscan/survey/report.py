@@ -70,12 +70,12 @@ def _digest(scan: dict[str, Any]) -> str:
 def _summarise(project: Project, spacing: float | None) -> ScanSummary:
     scan, extract = project.load_scan(), project.finished("extract")
     stages = {name: project.finished(name) for name in STAGES if name != "report"}
-    frames, trajectory = project.load_frame_times(), project.load_trajectory()
+    frames, trajectory = project.load_placed_times(), project.load_trajectory()
     mesh = stages["mesh"].counts()
     summary = summarise(
         tell_recording(project, scan),
         load_scan_rig(project),
-        project.load_profile_parts(),
+        project.load_placed_parts(),
         frames=frames,
         laser=extract.key["settings"]["laser"],
         trajectory=trajectory,

@@ -101,7 +101,8 @@ def _trace_shifts(
 
     A cloud keeps no pixels: those of the nearest point of the profiles stand for them.
     """
-    profile, trajectory = project.load_profile(), project.load_trajectory()
+    profile = Profile.concatenate(list(project.load_placed_parts()))
+    trajectory = project.load_trajectory()
     profile = profile[:: max(len(profile) // _MOST_TRACED, 1)]
     tree = KDTree(trajectory.transform(profile.points, profile.time))
 

@@ -19,7 +19,7 @@ from .cloud import build_cloud
 from .extract import check_recording, extract_recording
 from .merged import require_recording
 from .mesh import build_mesh
-from .motion import check_times, follow_motion
+from .motion import check_motion, follow_motion
 from .origin import tell_origin, when_written
 from .progress import Progress, silent
 from .report import write_report
@@ -74,7 +74,7 @@ def scan(
     extractor, method = extractor or Murk(), method or RaySheet()
     mesher = mesher or GridMesh()
     mesher.check_available()
-    check_times(recording.path, motion, is_timed=recording.is_timed)
+    check_motion(recording, motion)
     settings = {"extractor": extractor, "method": method, "motion": motion, "mesher": mesher}
     project = begin_scan(
         out,

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation, Slerp
 
 from ..errors import InputError
-from .arrays import Points, Quaternions, Scalars
+from .arrays import Mask, Points, Quaternions, Scalars
 from .pose import Pose
 
 
@@ -47,6 +47,10 @@ class Trajectory:
         if len(self.times) > 1:
             rotations = Slerp(self.times, rotations)(times)
         return Trajectory(times, positions, rotations.as_quat(scalar_first=True))
+
+    def has(self, times: Scalars) -> Mask:
+        """Tell which times [s] are among its own: frames whose pose is known, not interpolated."""
+        return np.isin(times, self.times)
 
     def transform(self, points: Points, times: Scalars) -> Points:
         """Carry camera points [m] to the world frame; point i was seen at times[i] [s].
