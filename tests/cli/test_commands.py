@@ -71,7 +71,7 @@ def test_every_command_has_help(command, capsys):
         (("--step-mm", "1", "--laser", "3"), "no laser 3"),
         (("--step-mm", "1", "--set", "colour=3"), "is no setting of Murk"),
         (("--step-mm", "1", "--extractor", "magic"), "magic"),
-        (("--step-mm", "1", "--start-time", "noon", "--poses", "x"), "exactly one of"),
+        (("--step-mm", "1", "--start-time", "noon", "--poses", "."), "exactly one of"),
         (("--step-mm", "1", "--start-time", "5"), "go with --poses"),
         (("--step-mm", "1", "--set", "clutter=nan"), "clutter"),
     ],
@@ -155,3 +155,37 @@ def test_simulate_says_what_it_wants(capsys, tmp_path):
     assert "murkscan simulate SCENE OUT" in said
     assert "no scene teapot" in said
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["scan", "nothing", "--rig", "no.toml", "--step-mm", "1", "--out", "x"],
+        ["scan", ".", "--rig", "no.toml", "--step-mm", "1", "--out", "x"],
+        ["scan", ".", "--rig", ".", "--out", "x"],
+        ["extract", ".", "--rig", ".", "--out", "x", "--set", "clutter"],
+        ["calibrate", "camera", "nothing", "--board", "9x6", "--square-mm", "30", "--rig", "x"],
+        ["measure", "nothing", "area"],
+        ["view", "nothing"],
+        ["mesh", "nothing", "--faces", "2"],
+        ["report"],
+        ["frobnicate"],
+    ],
+)
+def test_a_wrong_call_is_refused_before_anything_heavy_is_loaded(words):
+    """What makes an answer slow is imports, so these are counted; its time is a benchmark."""
+    code = (
+        f"import sys; from murkscan.cli.main import run; status = run({words});"
+        "print(status, [m for m in ('numpy', 'numba', 'cv2', 'scipy') if m in sys.modules])"
+    )
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert said.stdout.splitlines()[-1] == "2 []"
+
+
+def test_a_scan_that_begins_loads_no_statistics_and_no_plots():
+    code = (
+        "import sys, murkscan.survey.scan;"
+        "print([m for m in ('scipy.stats', 'matplotlib', 'trimesh') if m in sys.modules])"
+    )
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert said.stdout.splitlines()[-1] == "[]"

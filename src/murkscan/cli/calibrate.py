@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from cyclopts import App
 
 from ..errors import InputError
+from .paths import PhotoPath
 from .progress import progress_bars
 from .words import print_table, say, say_verdict
 
@@ -46,7 +47,7 @@ app.command(
 
 @app.command
 def camera(
-    images: Path,
+    images: PhotoPath,
     *,
     board: str,
     square_mm: float,

@@ -9,6 +9,7 @@ from .calibrate import parse_board
 from .calibrate_port import print_parameters, say_photos
 from .choices import ExtractorName, make_extractor
 from .options import read_numbers
+from .paths import PhotoPath, RigFile
 from .progress import progress_bars
 from .words import print_table, say, say_verdict
 
@@ -18,11 +19,11 @@ if TYPE_CHECKING:
 
 
 def laser(
-    images: Path,
+    images: PhotoPath,
     *,
     board: str,
     square_mm: float,
-    rig: Path,
+    rig: RigFile,
     kind: Literal["plane", "fan"] = "plane",
     margin_mm: str | None = None,
     laser: int = 0,

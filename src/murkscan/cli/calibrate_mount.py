@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from ..errors import InputError
 from .calibrate import parse_board
 from .options import read_numbers, read_start_time
+from .paths import LogPath, PhotoPath, RigFile
 from .progress import progress_bars
 from .words import print_table, say, say_verdict
 
@@ -16,12 +17,12 @@ if TYPE_CHECKING:
 
 
 def mount(
-    images: Path,
+    images: PhotoPath,
     *,
     board: str,
     square_mm: float,
-    poses: Path,
-    rig: Path,
+    poses: LogPath,
+    rig: RigFile,
     fps: float | None = None,
     start_time: str = "0",
     time_offset_s: float = 0.0,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 from ..errors import InputError
 from .calibrate import parse_board
+from .paths import PhotoPath, RigFile
 from .progress import progress_bars
 from .words import print_table, say, say_verdict
 
@@ -19,11 +20,11 @@ _NUMBER = r"[0-9]*\.?[0-9]+"
 
 
 def port(
-    images: Path,
+    images: PhotoPath,
     *,
     board: str,
     square_mm: float,
-    rig: Path,
+    rig: RigFile,
     distance_mm: str | None = None,
     index_sigma: float = 2e-4,
     index: Literal["known", "free"] = "known",

@@ -44,6 +44,19 @@ def make_mesher(name: MesherName, settings: tuple[str, ...]) -> "AbstractMesher"
     return _make("mesh", _MESHERS[name], settings)
 
 
+def check_settings(settings: tuple[str, ...]) -> None:
+    """Refuse settings that are not written as NAME=NUMBER, before a stage is loaded for them.
+
+    Raises:
+        InputError: One of them is not.
+    """
+    for setting in settings:
+        name, _, text = setting.partition("=")
+        if not name or not text:
+            raise InputError(f"--set {setting!r} is no setting; give --set NAME=NUMBER.")
+        _parse(setting, text, float)
+
+
 def _make(stage: str, choice: str, settings: tuple[str, ...]) -> Any:
     final = getattr(importlib.import_module(f"murkscan.{stage}"), choice)
     defaults = final()

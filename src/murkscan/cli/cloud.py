@@ -6,11 +6,12 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from ..errors import InputError
+from .paths import ScanFolder
 from .progress import progress_bars
 
 
 def cloud(
-    out: Path,
+    out: ScanFolder,
     *,
     export: Annotated[tuple[Path, ...], Parameter(negative=())] = (),
     voxel_mm: float | None = None,
@@ -34,6 +35,10 @@ def cloud(
     frames
         Write one cloud a frame for more than 500 frames, too.
     """
+    if voxel_mm is not None and not export:
+        raise InputError("--voxel-mm thins what is exported; say where to with --export FILE.")
+    if voxel_mm is not None and not 0 < voxel_mm < float("inf"):
+        raise InputError(f"--voxel-mm must be above 0, got {voxel_mm:g}.")
     from ..cloud import Doubtful, SeenThrough, Sparse
     from ..project import Project
     from ..survey.cloud import build_cloud
@@ -42,10 +47,6 @@ def cloud(
     from ..survey.scan_rig import load_scan_rig
     from .summary import print_result
 
-    if voxel_mm is not None and not export:
-        raise InputError("--voxel-mm thins what is exported; say where to with --export FILE.")
-    if voxel_mm is not None and not 0 < voxel_mm < float("inf"):
-        raise InputError(f"--voxel-mm must be above 0, got {voxel_mm:g}.")
     project = Project(out)
     for path in export:
         check_export(path)

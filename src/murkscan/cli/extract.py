@@ -2,16 +2,17 @@
 
 from pathlib import Path
 
-from .choices import ExtractorName, make_extractor
+from .choices import ExtractorName, check_settings, make_extractor
 from .options import RecordingFlags, Settings
+from .paths import RecordingPath, RigFile
 from .progress import progress_bars
 from .typed import WORDS
 
 
 def extract(
-    recording: Path,
+    recording: RecordingPath,
     *,
-    rig: Path,
+    rig: RigFile,
     out: Path,
     reading: RecordingFlags = RecordingFlags(),
     extractor: ExtractorName = "murk",
@@ -35,6 +36,7 @@ def extract(
     laser
         Number of the laser in the rig whose stripe is followed, from 0.
     """
+    check_settings(settings)
     from ..io.rig_toml import load_rig
     from ..survey.extract import extract_recording
     from ..survey.scan import begin_scan

@@ -1,9 +1,10 @@
 """The door: commands by name, and what a failure says."""
 
 import io
+import shutil
 import sys
+import textwrap
 import traceback
-from importlib.metadata import version
 
 from cyclopts import App, CycloptsError
 
@@ -28,16 +29,24 @@ _COMMANDS = {
 }
 """Each lies in the file of its name, and is imported when it is called: --help stays instant."""
 
+
+def _version() -> str:
+    from importlib.metadata import version
+
+    return version("murkscan")
+
+
 app = App(
     name="murkscan",
     help="Measured 3D models of objects in murky water, from a camera and a line laser.",
-    version=lambda: version("murkscan"),
+    version=_version,
     version_flags=["--version"],
+    help_format="plaintext",
     suppress_keyboard_interrupt=False,
 )
-for _name, _help in _COMMANDS.items():
+for _place, (_name, _help) in enumerate(_COMMANDS.items()):
     _target = "app" if _name in ("calibrate", "measure") else _name
-    app.command(f"murkscan.cli.{_name}:{_target}", name=_name, help=_help)
+    app.command(f"murkscan.cli.{_name}:{_target}", name=_name, help=_help, sort_key=_place)
 
 
 def main() -> None:
@@ -67,8 +76,12 @@ def run(arguments: list[str]) -> int:
             print_error=False,
             result_action="return_value",
         )
-    except (MurkscanError, CycloptsError) as error:
+    except MurkscanError as error:
         return _say(str(error), 2)
+    except CycloptsError as error:
+        # Where we found the fault ourselves while the words were read, our own sentence says it.
+        ours = error.__cause__ if isinstance(error.__cause__, MurkscanError) else error
+        return _say(str(ours), 2)
     except KeyboardInterrupt:
         return _say("stopped; what is finished is kept. Run the same command again.", 130)
     except OSError as error:
@@ -80,5 +93,12 @@ def run(arguments: list[str]) -> int:
 
 
 def _say(sentence: str, status: int) -> int:
-    print(f"murkscan: {sentence}", file=sys.stderr)
+    width = shutil.get_terminal_size().columns if sys.stderr.isatty() else 10_000
+    for line in f"murkscan: {sentence}".splitlines():
+        print(
+            textwrap.fill(line, width, break_long_words=False, break_on_hyphens=False)
+            if len(line) > width
+            else line,
+            file=sys.stderr,
+        )
     return status

@@ -10,6 +10,7 @@ from cyclopts import Parameter
 
 from ..errors import InputError
 from .options import read_numbers
+from .paths import ScanFolder
 from .words import print_table, say
 
 if TYPE_CHECKING:
@@ -29,9 +30,11 @@ Place = Annotated[str, Parameter(allow_leading_hyphen=True)]
 """Coordinates parted by commas, of which the first may be negative."""
 MaybePlace = Annotated[str | None, Parameter(allow_leading_hyphen=True)]
 """The same, which may be left out."""
-CloudScan = Annotated[Path, Parameter(help="Folder of the scan, with a finished cloud stage.")]
+CloudScan = Annotated[
+    ScanFolder, Parameter(help="Folder of the scan, with a finished cloud stage.")
+]
 MeshScan = Annotated[
-    Path, Parameter(help="Folder of the scan, with finished cloud and mesh stages.")
+    ScanFolder, Parameter(help="Folder of the scan, with finished cloud and mesh stages.")
 ]
 Name = Annotated[str, Parameter(help="What to call it: OUT/measure/NAME.json.")]
 

@@ -37,14 +37,14 @@ def merge(
     as_logged
         Move nothing: the poses of all passes are in one frame already, and good enough.
     """
-    from ..survey.merge import merge_passes
-    from .summary import print_result
-
     if not passes:
         raise InputError("Give the folders of two scans or more: murkscan merge A B --out OUT.")
     for flag, value in (("--reach-mm", reach_mm), ("--voxel-mm", voxel_mm)):
         if value is not None and not 0 < value < float("inf"):
             raise InputError(f"{flag} must be above 0, got {value:g}.")
+    from ..survey.merge import merge_passes
+    from .summary import print_result
+
     with progress_bars() as progress:
         result = merge_passes(
             passes,

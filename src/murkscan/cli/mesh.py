@@ -6,13 +6,14 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from ..errors import InputError
-from .choices import MesherName, make_mesher
+from .choices import MesherName, check_settings, make_mesher
 from .options import Settings
+from .paths import ScanFolder
 from .progress import progress_bars
 
 
 def mesh(
-    out: Path,
+    out: ScanFolder,
     *,
     mesher: MesherName = "grid",
     settings: Settings = (),
@@ -40,15 +41,16 @@ def mesh(
     export
         Write the surface to this file, too: .ply, .stl, .obj or .glb; may be given again.
     """
+    if close_holes_mm is not None and not 0 < close_holes_mm < float("inf"):
+        raise InputError(f"--close-holes-mm must be above 0, got {close_holes_mm:g}.")
+    if faces is not None and faces < 4:
+        raise InputError(f"--faces must be 4 or more, got {faces}.")
+    check_settings(settings)
     from ..mesh import ByDepth, BySignal
     from ..project import Project
     from ..survey.mesh import Finish, build_mesh, check_mesh_export, export_mesh
     from .summary import print_result
 
-    if close_holes_mm is not None and not 0 < close_holes_mm < float("inf"):
-        raise InputError(f"--close-holes-mm must be above 0, got {close_holes_mm:g}.")
-    if faces is not None and faces < 4:
-        raise InputError(f"--faces must be 4 or more, got {faces}.")
     for path in export:
         check_mesh_export(path)
     finish = Finish(

@@ -1,11 +1,10 @@
 """murkscan motion: where the camera was in each frame."""
 
-from pathlib import Path
-
 from .options import MotionFlags
+from .paths import ScanFolder
 
 
-def motion(out: Path, *, flags: MotionFlags = MotionFlags()) -> None:
+def motion(out: ScanFolder, *, flags: MotionFlags = MotionFlags()) -> None:
     """Find where the camera was in each frame of a scan.
 
     Parameters
@@ -13,6 +12,7 @@ def motion(out: Path, *, flags: MotionFlags = MotionFlags()) -> None:
     out
         Folder of the scan, with a finished extract stage.
     """
+    flags.check()
     from ..project import Project
     from ..survey.motion import follow_motion
     from ..survey.scan_rig import load_scan_rig

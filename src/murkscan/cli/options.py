@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Parameter
 
 from ..errors import InputError
+from .paths import MaybeLogPath
 
 if TYPE_CHECKING:
     from ..capture import AbstractRecording
@@ -56,7 +57,7 @@ class MotionFlags:
     """Constant speed [mm/s]; negative for the other way."""
     step_mm: float | None = None
     """Constant step [mm] from one recorded picture to the next; negative for the other way."""
-    poses: Path | None = None
+    poses: MaybeLogPath = None
     """Log of poses: CSV with time_s,x_m,y_m,z_m,qw,qx,qy,qz, or northing, easting, depth, roll,
     pitch, heading; EuRoC, rostopic echo -p, or TUM."""
     along: Literal["x", "y", "z"] | None = None
@@ -76,11 +77,12 @@ class MotionFlags:
     log_angles: Literal["deg", "rad"] | None = None
     """Unit of the log's roll, pitch and heading; found from the column's name, else degrees."""
 
-    def make(self, rig: "Rig", laser: int) -> "AbstractMotion":
-        """Make the motion that these flags describe."""
-        from ..motion import ConstantSpeed, ConstantStep, PoseLog
-        from ..types.pose import Pose
+    def check(self) -> None:
+        """Refuse flags that describe no motion, before anything else is done.
 
+        Raises:
+            InputError: There is none, or more than one, or a flag that changes nothing.
+        """
         given = [flag for flag in (self.speed_mm_s, self.step_mm, self.poses) if flag is not None]
         if len(given) != 1:
             raise InputError(
@@ -88,8 +90,22 @@ class MotionFlags:
                 f"{'were' if given else 'was'} given, and without knowing how the camera moved "
                 "there is no model."
             )
-        along = self.along or rig.laser(laser).axis
+        if 0 in given:
+            raise InputError(
+                "--speed-mm-s and --step-mm take a number other than 0; a camera that stands still "
+                "sees one profile."
+            )
         self._check_effect()
+        read_start_time(self.start_time)
+
+    def make(self, rig: "Rig", laser: int) -> "AbstractMotion":
+        """Make the motion that these flags describe."""
+        from ..io.poses import load_poses
+        from ..motion import ConstantSpeed, ConstantStep, PoseLog
+        from ..types.pose import Pose
+
+        self.check()
+        along = self.along or rig.laser(laser).axis
         if self.speed_mm_s is not None:
             return ConstantSpeed(self.speed_mm_s / 1e3, along)
         if self.step_mm is not None:

@@ -1,16 +1,23 @@
-"""Progress bars on the terminal."""
+"""Progress bars on the terminal, from the first moment on."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from rich.progress import Progress as Bars
+
     from ..survey.progress import Progress
+
+_COMPILING = "compiling loops, once on this machine: some 20 s in all"
 
 
 @contextmanager
 def progress_bars() -> Iterator["Progress"]:
-    """Show a bar for each stage that tells how far it is."""
+    """Show a bar for each stage that tells how far it is, and what goes on before the first.
+
+    What is loaded within it is loaded while something is on the screen.
+    """
     from rich.console import Console
     from rich.progress import (
         BarColumn,
@@ -24,15 +31,40 @@ def progress_bars() -> Iterator["Progress"]:
     )
     from rich.progress import Progress as Bars
 
-    name = TextColumn("{task.description:<12}")
+    name = TextColumn("{task.description:<18}")
     columns: list[ProgressColumn] = [SpinnerColumn(), name, BarColumn()]
     columns += [MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn()]
     tasks: dict[str, TaskID] = {}
     with Bars(*columns, console=Console(stderr=True)) as bars:
+        loading = bars.add_task("loading", total=None)
 
         def show(stage: str, done: int, total: int | None) -> None:
+            bars.update(loading, visible=False)
             if stage not in tasks:
                 tasks[stage] = bars.add_task(stage, total=total)
             bars.update(tasks[stage], completed=min(done, total or done), total=total)
 
-        yield show
+        with _telling_of_compilation(bars):
+            yield show
+        bars.update(loading, visible=False)
+
+
+@contextmanager
+def _telling_of_compilation(bars: "Bars") -> Iterator[None]:
+    """Say so when loops are compiled, as they are on their first use after an installation."""
+    from numba.core import event
+
+    told = False
+
+    class Listener(event.Listener):  # type: ignore[misc]
+        def on_start(self, event: object) -> None:
+            nonlocal told
+            if not told:
+                told = True
+                bars.console.print(_COMPILING, highlight=False)
+
+        def on_end(self, event: object) -> None:
+            pass
+
+    with event.install_listener("numba:compile", Listener()):
+        yield

@@ -1,11 +1,10 @@
 """murkscan report: a page on how the scan went."""
 
-from pathlib import Path
-
+from .paths import ScanFolder
 from .progress import progress_bars
 
 
-def report(out: Path, *, spacing_mm: float | None = None) -> None:
+def report(out: ScanFolder, *, spacing_mm: float | None = None) -> None:
     """Write a page on how the scan went: coverage, spacing, signal, uncertainty, settings.
 
     Parameters

@@ -9,19 +9,21 @@ from .choices import (
     ExtractorName,
     MesherName,
     MethodName,
+    check_settings,
     make_extractor,
     make_mesher,
     make_method,
 )
 from .options import MotionFlags, RecordingFlags, Settings
+from .paths import RecordingPath, RigFile
 from .progress import progress_bars
 from .typed import WORDS
 
 
 def scan(
-    recording: Path,
+    recording: RecordingPath,
     *,
-    rig: Path,
+    rig: RigFile,
     out: Path,
     motion: MotionFlags = MotionFlags(),
     reading: RecordingFlags = RecordingFlags(),
@@ -57,12 +59,14 @@ def scan(
     frames
         Write one cloud a frame for more than 500 frames, too.
     """
-    from ..io.rig_toml import load_rig
-    from ..survey.scan import scan as run
-    from .summary import print_summary, when_reported
-
-    of_recording, before = load_rig(rig), when_reported(out)
+    motion.check()
+    check_settings(settings)
     with progress_bars() as progress:
+        from ..io.rig_toml import load_rig
+        from ..survey.scan import scan as run
+        from .summary import print_summary, when_reported
+
+        of_recording, before = load_rig(rig), when_reported(out)
         project = run(
             reading.open(recording, of_recording),
             of_recording,

@@ -1,12 +1,11 @@
 """murkscan triangulate: turn stripes into profiles."""
 
-from pathlib import Path
-
 from .choices import MethodName, make_method
+from .paths import ScanFolder
 from .progress import progress_bars
 
 
-def triangulate(out: Path, *, method: MethodName = "ray-sheet") -> None:
+def triangulate(out: ScanFolder, *, method: MethodName = "ray-sheet") -> None:
     """Turn the stripes of a scan into profiles in the camera's frame.
 
     Parameters

@@ -5,15 +5,16 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from .paths import ScanFolder, require_scan
 from .progress import progress_bars
 
 Flag = Annotated[bool, Parameter(negative=())]
 
 
 def view(
-    out: Path,
+    out: ScanFolder,
     *,
-    other: Annotated[Path | None, Parameter(name="--with")] = None,
+    other: Annotated[Path | None, Parameter(name="--with", validator=require_scan)] = None,
     as_given: Flag = False,
     deviation: str = "deviation",
     points: int = 2_000_000,
