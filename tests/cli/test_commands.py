@@ -72,7 +72,7 @@ def test_every_command_has_help(command, capsys):
         (("--step-mm", "1", "--set", "colour=3"), "is no setting of Murk"),
         (("--step-mm", "1", "--extractor", "magic"), "magic"),
         (("--step-mm", "1", "--start-time", "noon", "--poses", "."), "exactly one of"),
-        (("--step-mm", "1", "--start-time", "5"), "go with --poses"),
+        (("--step-mm", "1", "--start-time", "5"), "goes with --poses"),
         (("--step-mm", "1", "--set", "clutter=nan"), "clutter"),
     ],
 )

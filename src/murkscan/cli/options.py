@@ -100,7 +100,6 @@ class MotionFlags:
 
     def make(self, rig: "Rig", laser: int) -> "AbstractMotion":
         """Make the motion that these flags describe."""
-        from ..io.poses import load_poses
         from ..motion import ConstantSpeed, ConstantStep, PoseLog
         from ..types.pose import Pose
 
