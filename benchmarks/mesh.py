@@ -34,7 +34,7 @@ from murkscan.io.mesh_files import load_mesh
 from murkscan.io.parquet import load_true_stripe
 from murkscan.io.poses import load_poses
 from murkscan.mesh import AbstractMesher, ClosedHoles, close_holes, decimate
-from murkscan.simulate import load_scene
+from murkscan.simulate import Recorder, load_scene
 from murkscan.survey.cloud import build_cloud
 from murkscan.survey.extract import extract_recording
 from murkscan.survey.motion import follow_motion
@@ -100,7 +100,7 @@ def scan_hull(folder: Path) -> Project:
     part = slice(first - first % 2, first - first % 2 + 2 * PICTURES)
     recorded = folder / "recording"
     if not (recorded / "truth" / "stripes.parquet").exists():
-        scene = replace(scene, times=scene.times[part], sensor=replace(scene.sensor, codec="ffv1"))
+        scene = replace(scene, times=scene.times[part], recorder=Recorder("ffv1"))
         simulate_recording(scene, recorded)
     rig = load_rig(recorded / "rig.toml")
     recording = open_recording(recorded / "recording.mkv", fields="top-first")

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from murk_match import VISIBLE
 from murk_rows import ROWS
 from murk_traced import FRAMES, is_possible, trace_recording
 
@@ -13,7 +14,7 @@ from murkscan.capture import AbstractRecording, open_recording
 from murkscan.io.parquet import load_true_stripe
 from murkscan.io.rig_toml import load_rig
 from murkscan.optics.phase_henyey_greenstein import HenyeyGreenstein
-from murkscan.simulate import Body, Scene, load_scene
+from murkscan.simulate import Body, Recorder, Scene, load_scene
 from murkscan.simulate.textures import Plain
 from murkscan.simulate.textures.bands import Bands
 from murkscan.simulate.textures.growth import Growth
@@ -60,7 +61,7 @@ def _with_sensor(**changed: object) -> Callable[[Scene], Scene]:
 OTHERS: dict[str, Callable[[Scene], Scene]] = {
     "c3-ambient": lambda scene: replace(scene, light=replace(scene.light, ambient=_AMBIENT)),
     "c3-gloss": _with_gloss,
-    "c3-h264": _with_sensor(codec="h264", crf=23),
+    "c3-h264": lambda scene: replace(scene, recorder=Recorder("h264", crf=23)),
     "c3-phase": _with_medium(phase=HenyeyGreenstein(0.9)),
     "c3-skirt": _with_medium(single_scattering_albedo=_SCATTERED),
     "c3-paint": _with_bands,
@@ -68,6 +69,7 @@ OTHERS: dict[str, Callable[[Scene], Scene]] = {
 }
 """Cases at c = 3 /m beside the ladder, and what is changed for each."""
 TRACED = "c3-traced"
+HD_ROWS = tuple(case for case, row in ROWS.items() if row.hd)
 CASES = (*RUNGS, *OTHERS, TRACED, *ROWS, *HD)
 
 
@@ -84,6 +86,11 @@ class Part:
         """Name of its folder in the cache."""
         return f"{self.case}-seed{self.seed}-{self.pictures}"
 
+    @property
+    def visible(self) -> float:
+        """Bound of a scan line up to which a true centre counts as visible [px]."""
+        return ROWS[self.case].visible if self.case in ROWS else VISIBLE
+
     def scene(self) -> Scene:
         """Make the scene: pictures from the middle of the hull, with paint of the seed's own."""
         row = ROWS.get(self.case)
@@ -99,7 +106,7 @@ class Part:
             scene,
             seed=self.seed,
             bodies=tuple(_repaint(body, self.seed) for body in scene.bodies),
-            sensor=replace(scene.sensor, codec="ffv1"),
+            recorder=Recorder("ffv1"),
         )
         return OTHERS.get(self.case, lambda same: same)(scene)
 
@@ -122,7 +129,7 @@ class Part:
                 trace_recording(folder, self.seed)
             else:
                 simulate_recording(self.scene(), folder)
-        return Recorded(folder, is_interlaced=self.case not in (*HD, TRACED))
+        return Recorded(folder, is_interlaced=self.case not in (*HD, *HD_ROWS, TRACED))
 
 
 def _repaint(body: Body, seed: int) -> Body:
@@ -159,7 +166,7 @@ class Recorded:
 def parts_of(cases: list[str], seeds: list[int], pictures: int, pictures_hd: int) -> Iterator[Part]:
     """Give the parts in the order of the cases: beside the ladder of the first seed alone."""
     for case in cases:
-        length = {TRACED: FRAMES} | dict.fromkeys(HD, pictures_hd)
+        length = {TRACED: FRAMES} | dict.fromkeys((*HD, *HD_ROWS), pictures_hd)
         if case != TRACED or is_possible():
             for seed in seeds if case in RUNGS else seeds[:1]:
                 yield Part(case, seed, length.get(case, pictures))

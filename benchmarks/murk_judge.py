@@ -35,7 +35,8 @@ def judge(matched: Matched, lines: int) -> dict[str, Any]:
     seen, hit, error = matched.is_visible, matched.is_hit, matched.error
     crlb = matched.truth.crlb
     within = [
-        (low < crlb) & (crlb <= high) for low, high in zip((-1, *BOUNDS), BOUNDS, strict=False)
+        (low < crlb) & (crlb <= high)
+        for low, high in zip((-1, *BOUNDS), (*BOUNDS, math.inf), strict=False)
     ]
     sure = seen & hit & (crlb <= _SURE)
     known = np.flatnonzero(seen & hit)

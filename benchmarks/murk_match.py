@@ -11,6 +11,8 @@ REACH = 1.5
 """Distance from a true centre up to which a found one is right [px of the full frame]."""
 VISIBLE = 0.5
 """Bound of a scan line up to which a true centre counts as visible [px]."""
+_WHITE = 251
+"""Height above black at which a stripe is white [grey levels]."""
 _WIDEST = 1 << 16
 """More scan lines than any picture has."""
 
@@ -27,6 +29,8 @@ class Matched:
     """Number of the true centre that each found one is; -1: it is none."""
     found_of_truth: np.ndarray
     """Number of the found centre that each true one is found as; -1: it is missed."""
+    visible: float = VISIBLE
+    """Bound of a scan line up to which a true centre counts as visible [px]."""
 
     @property
     def is_right(self) -> np.ndarray:
@@ -40,8 +44,12 @@ class Matched:
 
     @property
     def is_visible(self) -> np.ndarray:
-        """Which true centres a finder can be asked for: of the line itself, with enough light."""
-        return ~self.truth.is_reflected & (self.truth.crlb <= VISIBLE)
+        """Which true centres a finder can be asked for: of the line itself, with enough light.
+
+        A white plateau tells little of its bound's kind, and has two edges that anybody sees.
+        """
+        known = (self.truth.crlb <= self.visible) | (self.truth.signal >= _WHITE)
+        return ~self.truth.is_reflected & known
 
     @property
     def error(self) -> np.ndarray:
@@ -64,7 +72,9 @@ def pick_frames(truth: TrueStripe, frames: list[int]) -> TrueStripe:
     return TrueStripe(*(getattr(truth, column.name)[kept] for column in fields(truth)))
 
 
-def match_stripes(found: Stripe, truth: TrueStripe, albedo: np.ndarray) -> Matched:
+def match_stripes(
+    found: Stripe, truth: TrueStripe, albedo: np.ndarray, *, visible: float = VISIBLE
+) -> Matched:
     """Pair each found centre with the true one nearest to it, one to one, nearest pairs first.
 
     Only centres of the line itself can be paired: where gloss throws a second line, a point there
@@ -75,7 +85,7 @@ def match_stripes(found: Stripe, truth: TrueStripe, albedo: np.ndarray) -> Match
     for i in np.argsort(away, kind="stable"):
         if of_found[a[i]] < 0 and of_truth[b[i]] < 0:
             of_found[a[i]], of_truth[b[i]] = b[i], a[i]
-    return Matched(found, truth, albedo, of_found, of_truth)
+    return Matched(found, truth, albedo, of_found, of_truth, visible)
 
 
 def _pairs(found: Stripe, truth: TrueStripe) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -4,9 +4,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
+from murk_match import VISIBLE
 from murk_objects import fit_things, plate
 
-from murkscan.simulate import Body, Scene, Simulator, load_scene
+from murkscan.simulate import Body, Recorder, Scene, Simulator, load_scene
+from murkscan.simulate.textures import Plain
 from murkscan.simulate.textures.growth import Growth
 from murkscan.types.pose import Pose
 
@@ -15,6 +17,10 @@ Change = Callable[[Scene], Scene]
 _TEXT = ("HDG 273  PITCH -2", "DPT 12.4 m", "{time}", "CAM 1  LAMP 40 %")
 _WALL = 0.85
 """Distance of the wall on which the stripe stands still [m]."""
+_PIXEL = 0.00115
+"""What a pixel of PAL sees of the hull, across the sheet [m]."""
+_PLASTIC = 0.004
+"""How far light goes on under white plastic [m]."""
 _HOPELESS = 6.0
 """Beam attenuation at which the camera's exposure is at its end [1/m]."""
 
@@ -32,11 +38,17 @@ class Row:
     """Bar [%]."""
     false: float | None = None
     """Bar: false points in 10 000 scan lines, where nothing is there to be found."""
+    bias: float | None = None
+    """Bar [px]; of all errors' median."""
+    visible: float = VISIBLE
+    """Bound of a scan line up to which a true centre counts as visible [px]."""
+    hd: bool = False
+    """Whether the machine-vision rig films."""
 
     def scene(self, seed: int) -> Scene:
         """Make the scene."""
-        scene = replace(load_scene(f"hull-c{self.murk:g}"), seed=seed)
-        scene = replace(scene, sensor=replace(scene.sensor, codec="ffv1"))
+        scene = replace(load_scene(f"hull-c{self.murk:g}{'-hd' * self.hd}"), seed=seed)
+        scene = replace(scene, recorder=Recorder("ffv1"))
         for change in self.changes:
             scene = change(scene)
         return scene
@@ -65,6 +77,14 @@ def in_hopeless_murk(scene: Scene) -> Scene:
     """Keep the exposure of the murkiest water in which the lamp still reaches the hull."""
     brightest = replace(load_scene(f"hull-c{_HOPELESS:g}"), seed=scene.seed)
     return replace(scene, sensor=_as_exposed(brightest).sensor)
+
+
+def with_white_things(scene: Scene) -> Scene:
+    """Make anodes and plates of white plastic: bands of 18 px beside a line of 2 px."""
+    hull, *others = scene.bodies
+    cut, *things = fit_things(_repaint(hull, scene.seed), scene.seed)
+    white = [replace(t, texture=Plain(0.8), translucency=_PLASTIC, gloss=0.1) for t in things]
+    return replace(scene, bodies=(cut, *white, *others))
 
 
 def with_laser_off(scene: Scene) -> Scene:
@@ -98,8 +118,32 @@ def _with_sensor(**changed: object) -> Change:
     return lambda scene: replace(scene, sensor=replace(scene.sensor, **changed))
 
 
+def _with_processing(**changed: object) -> Change:
+    return lambda scene: replace(scene, processing=replace(scene.processing, **changed))
+
+
+def _with_recorder(**changed: object) -> Change:
+    return lambda scene: replace(scene, recorder=Recorder(**changed))
+
+
 def _with_light(**changed: object) -> Change:
     return lambda scene: replace(scene, light=replace(scene.light, **changed))
+
+
+def _wide(sigma: float) -> Change:
+    """Let the sheet be that thick on the hull [px] and white, and the hull of one paint.
+
+    A lens out of focus would mix the scan lines, so that the plateau's middle is no truth.
+    """
+    light = _with_light(waist=4 * sigma * _PIXEL)
+    bright = _with_sensor(peak_grey=900.0)
+
+    def change(scene: Scene) -> Scene:
+        hull, *others = scene.bodies
+        hull = replace(hull, texture=Plain(0.08))
+        return bright(light(replace(scene, bodies=(hull, *others))))
+
+    return change
 
 
 _GHOST = _with_window(ghost=40.0)
@@ -111,6 +155,12 @@ _FRAMED = _with_overlay(border=150.0)
 CLUTTER = (_GHOST, _WINDOW, _SENSOR, _FAN, _WRITTEN, _FRAMED)
 """All that is fixed to the picture, at once."""
 _HULL = (with_things,)
+
+
+def _hull(recall: float, precision: float, *changes: Change) -> Row:
+    """Ask for so much on the hull with its things at c = 3 /m, with these changes."""
+    return Row(3, (with_things, *changes), recall, precision)
+
 
 ROWS: dict[str, Row] = {
     "c3-things": Row(3, _HULL, 96, 98.5),
@@ -126,6 +176,22 @@ ROWS: dict[str, Row] = {
     "c5-still": Row(5, (before_a_wall, *CLUTTER), 95, 98),
     "c3-off": Row(3, (*_HULL, *CLUTTER, with_laser_off), false=1),
     "c3-sea": Row(3, (in_an_empty_sea, *CLUTTER), false=1),
+    "c0.3-wide8": Row(0.3, (_wide(8.0),), 97, 97, bias=0.05),
+    "c3-wide8": Row(3, (_wide(8.0),), 97, 97, bias=0.05),
+    "c0.3-wide14": Row(0.3, (_wide(14.0),), 90, 97, bias=0.05),
+    "c0.3-widths": Row(0.3, (with_white_things, _with_sensor(peak_grey=900.0)), 96, 98.5),
+    "c3-widths": Row(3, (with_white_things, _with_sensor(peak_grey=900.0)), 96, 98.5),
+    "c3-speckle5": _hull(95, 98.5, _with_light(speckle=0.5)),
+    "c3-speckle7": _hull(95, 98.5, _with_light(speckle=0.7)),
+    "c3-isp": _hull(95, 98.5, _with_processing(gamma=0.45, sharpening=1.0)),
+    "c3-denoise": _hull(95, 98.5, _with_recorder(codec="ffv1", denoise=0.8)),
+    "c3-h264-2.8": _hull(95, 98.5, _with_recorder(codec="h264", bitrate=2.8e6)),
+    "c3-h265-2.8": _hull(95, 98.5, _with_recorder(codec="h265", bitrate=2.8e6)),
+    "c3-mjpeg": _hull(95, 98.5, _with_recorder(codec="mjpeg", quality=5)),
+    "c3-h264-hd": Row(3, (with_things, _with_recorder(codec="h264", crf=32)), 95, 98.5, hd=True),
+    "c3-h265-hd": Row(
+        3, (with_things, _with_recorder(codec="h265", bitrate=4e6)), 95, 98.5, hd=True
+    ),
     "c10": Row(10, (*_HULL, in_hopeless_murk, *CLUTTER), false=1),
 }
 """Cases beside the ladder, by name."""

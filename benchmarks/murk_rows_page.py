@@ -53,6 +53,8 @@ def rows_figures(pooled: Pooled, champion: str) -> list[Figure]:
             Figure(f"{case}: within 1 σ", 100 * one["within sigma"], "%", 75.0, 62.0),
             Figure(f"{case}: posterior, off", one["calibration"], "points", at_most=5.0),
         ]
+        if row.bias is not None:
+            figures.append(Figure(f"{case}: bias", abs(one["bias"]), "px", at_most=row.bias))
         figures.append(Figure(f"{case}: points in holes", 100 * one["in holes"], "%"))
     return [figure for figure in figures if not math.isnan(figure.value)]
 

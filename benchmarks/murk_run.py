@@ -36,7 +36,8 @@ def judge_part(part: Part, name: str, finder: AbstractExtractor, cache: Path) ->
     found, seconds = _extract(finder, frames, rig, background)
     truth = pick_frames(recorded.truth, [frame.index for frame in frames])
     lines = len(frames) * rig.camera.size[0]
-    result = judge(match_stripes(found, truth, part.paint(truth)), lines)
+    matched = match_stripes(found, truth, part.paint(truth), visible=part.visible)
+    result = judge(matched, lines)
     result["seconds"] = seconds | {"decode": decode}
     path = cache / part.name / _JUDGED / f"{name}.json"
     path.parent.mkdir(exist_ok=True)

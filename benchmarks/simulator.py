@@ -104,18 +104,18 @@ def peak_memory(frames: int) -> float:
 import tempfile, numpy as np
 from dataclasses import replace
 from pathlib import Path
-from murkscan.simulate import load_scene
+from murkscan.simulate import Recorder, load_scene
 from murkscan.survey.simulate import simulate_recording
 from murkscan.types.trajectory import Trajectory
 scene = load_scene("plane-c1.5")
 camera = replace(scene.rig.camera, size=(180, 144), focal_length=(138.5, 138.5),
                  principal_point=(89.5, 71.5))
-sensor = replace(scene.sensor, interlaced=False, codec="ffv1")
+sensor = replace(scene.sensor, interlaced=False)
 times = np.arange({frames}) * 0.04
 ends = np.array([[0.0, 0.0, 0.0], [0.0, 0.4, 0.0]])
 way = Trajectory(np.array([0.0, 400.0]), ends, np.tile([1.0, 0.0, 0.0, 0.0], (2, 1)))
 scene = replace(scene, rig=replace(scene.rig, camera=camera), times=times, sensor=sensor,
-                trajectory=way)
+                trajectory=way, recorder=Recorder("ffv1"))
 with tempfile.TemporaryDirectory() as folder:
     simulate_recording(scene, Path(folder))
 # Not the resource module's figure: that of a child starts at its parent's.

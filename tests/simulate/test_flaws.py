@@ -157,3 +157,19 @@ def test_flaws_follow_the_seed():
     same, again, other = (_view(Window(dirt=0.02), seed=seed).transmission for seed in (0, 0, 1))
     np.testing.assert_array_equal(same, again)
     assert not np.array_equal(same, other)
+
+
+def test_a_translucent_surface_makes_a_band_of_the_same_light_about_the_same_centre():
+    thin, broad = (
+        Simulator.of(standing(wall(0.6, translucency=translucency))).draw_light(0).lasers[0]
+        for translucency in (0.0, 0.005)
+    )
+    column = 360
+    rows = np.arange(576)
+    centre, light = thin.line.positions[column], broad.stripe[:, column].astype(float)
+    assert light.sum() == pytest.approx(thin.stripe[:, column].sum(), rel=0.01)
+    # What spreads evenly on the slanting wall is not quite even in the picture.
+    assert (light * rows).sum() / light.sum() == pytest.approx(centre, abs=0.1)
+    width = np.sqrt((light * (rows - centre) ** 2).sum() / light.sum())
+    # 5 mm across the sheet, which meets the wall at atan(0.6 / 0.25); 554 px a radian at 0.6 m.
+    assert width == pytest.approx(0.005 / np.sin(np.arctan2(0.6, 0.25)) * 554 / 0.6, rel=0.05)

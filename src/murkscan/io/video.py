@@ -12,7 +12,10 @@ import numpy as np
 from ..errors import DeviceError, InputError
 from .atomic import replacing
 
-VideoCodec = Literal["ffv1", "h264"]
+VideoCodec = Literal["ffv1", "h264", "h265", "mjpeg"]
+_ENCODERS = {"ffv1": "ffv1", "h264": "libx264", "h265": "libx265", "mjpeg": "mjpeg"}
+_FORMATS = {"h264": "yuv420p", "h265": "yuv420p", "mjpeg": "yuvj420p"}
+"""Of those that keep colour at half the resolution."""
 LOSSLESS = {"level": "3", "slices": "4", "slicecrc": "1", "g": "1"}
 """FFV1's options: slices of their own let a damaged file lose little, and several cores work at
 once."""
@@ -28,6 +31,8 @@ def writing_video(
     rate: float,
     codec: VideoCodec,
     crf: int = 23,
+    bitrate: float | None = None,
+    quality: int = 5,
     interlaced: bool = False,
     is_colour: bool = False,
 ) -> Iterator[Callable[[np.ndarray, float], None]]:
@@ -37,33 +42,37 @@ def writing_video(
         path: Where the video shall be.
         size: Width and height of the pictures [px].
         rate: Pictures a second, for players; each picture has its own time.
-        codec: FFV1, which loses nothing, or H.264, whose luma is the grey level.
-        crf: Quality of H.264: 0 is best, 51 worst.
-        interlaced: Whether pictures hold two fields, the upper one first.
+        codec: FFV1, which loses nothing, or H.264, H.265 or MJPEG, whose luma is the grey level.
+        crf: Quality of H.264 and H.265: 0 is best, 51 worst.
+        bitrate: Bits a second of H.264 and H.265, in place of their quality [1/s].
+        quality: Quantiser of MJPEG: 1 is best, 31 worst.
+        interlaced: Whether pictures hold two fields, the upper one first; H.264 then codes them so.
         is_colour: Whether pictures are red, green, blue rather than grey.
 
     Yields:
         A function that adds a picture (8 bit, h w or h w 3) and its time [s].
 
     Raises:
-        InputError: H.264 is asked to keep pictures of odd width or height.
+        InputError: A codec with colour at half the resolution is asked to keep pictures of odd
+            width or height.
         DeviceError: The disk is full or cannot be written.
 
     References:
-        ITU-T H.264; RFC 9043 (FFV1).
+        ITU-T H.264, H.265 and T.81 (JPEG); RFC 9043 (FFV1).
     """
-    if codec == "h264" and (size[0] % 2 or size[1] % 2):
+    if codec in _FORMATS and (size[0] % 2 or size[1] % 2):
         raise InputError(
-            f"sensor.codec h264 keeps pictures of even width and height, not {size[0]} x {size[1]}."
+            f"sensor.codec {codec} keeps pictures of even width and height, not {size[0]} x "
+            f"{size[1]}."
         )
     with replacing(path) as aside, _open(path, aside) as container:
-        stream = container.add_stream(
-            {"ffv1": "ffv1", "h264": "libx264"}[codec], rate=Fraction(rate).limit_denominator(1001)
-        )
+        stream = container.add_stream(_ENCODERS[codec], rate=Fraction(rate).limit_denominator(1001))
         stream.width, stream.height = size
-        stream.pix_fmt = "yuv420p" if codec == "h264" else "bgr0" if is_colour else "gray"
+        stream.pix_fmt = _FORMATS.get(codec, "bgr0" if is_colour else "gray")
         stream.time_base = stream.codec_context.time_base = Fraction(1, _TICKS)
-        stream.codec_context.options = _options(codec, crf, interlaced)
+        stream.codec_context.options = _options(codec, interlaced) | (
+            _rate(codec, crf, bitrate, quality)
+        )
 
         def write(picture: np.ndarray, time: float) -> None:
             frame = _as_frame(picture, stream.pix_fmt)
@@ -83,12 +92,28 @@ def _open(path: Path, aside: Path) -> Iterator[Any]:
         raise DeviceError(f"Cannot write {path}: {error.strerror}. Make room.") from error
 
 
-def _options(codec: VideoCodec, crf: int, interlaced: bool) -> dict[str, str]:
+def _options(codec: VideoCodec, interlaced: bool) -> dict[str, str]:
+    """Give one thread to each encoder, so that the same pictures give the same bytes everywhere."""
     if codec == "ffv1":
         return LOSSLESS
-    # One thread, so that the same pictures give the same bytes on every machine.
-    options = {"crf": str(crf), "preset": "medium", "threads": "1"}
-    return options | ({"flags": "+ilme+ildct", "x264-params": "tff=1"} if interlaced else {})
+    if codec == "h265":
+        return {"preset": "medium", "x265-params": "pools=none:frame-threads=1:log-level=none"}
+    if codec == "mjpeg":
+        return {"threads": "1"}
+    fields = {"flags": "+ilme+ildct", "x264-params": "tff=1"} if interlaced else {}
+    return {"preset": "medium", "threads": "1", **fields}
+
+
+def _rate(codec: VideoCodec, crf: int, bitrate: float | None, quality: int) -> dict[str, str]:
+    """Say how many bits a picture may take; those of a rate may be spread over a second."""
+    if codec == "ffv1":
+        return {}
+    if codec == "mjpeg":
+        return {"qmin": str(quality), "qmax": str(quality)}
+    if bitrate is None:
+        return {"crf": str(crf)}
+    bits = str(round(bitrate))
+    return {"b": bits, "maxrate": bits, "bufsize": bits}
 
 
 def _as_frame(picture: np.ndarray, pix_fmt: str) -> Any:
@@ -100,4 +125,4 @@ def _as_frame(picture: np.ndarray, pix_fmt: str) -> Any:
         return av.VideoFrame.from_ndarray(np.ascontiguousarray(picture), "gray")
     # The grey levels themselves are the luma: a conversion would squeeze them.
     flat = np.full((picture.shape[0] // 2, picture.shape[1]), 128, np.uint8)
-    return av.VideoFrame.from_ndarray(np.concatenate([picture, flat]), "yuv420p")
+    return av.VideoFrame.from_ndarray(np.concatenate([picture, flat]), pix_fmt)

@@ -8,6 +8,8 @@ from .frames import simulate_frames as simulate_frames
 from .line_image import LineImage as LineImage
 from .overlay import Overlay as Overlay
 from .particles import Particles as Particles
+from .processing import Processing as Processing
+from .recorder import Recorder as Recorder
 from .scene import Scene as Scene
 from .scene_file import as_standalone as as_standalone
 from .scene_file import list_scenes as list_scenes

@@ -42,6 +42,8 @@ class Light:
     """Irradiance by daylight or lamps, in the laser's colour, on every surface [W/m²]."""
     streaks: float = 0.0
     """How uneven the fan is along its angle, 1σ, as a share: dust and grooves on its optics."""
+    speckle: float = 0.0
+    """Contrast of the stripe's speckle: its standard deviation as a share of its mean."""
     is_on: bool = True
     """Whether the lasers shine; exposure is set as if they did."""
 
@@ -60,6 +62,8 @@ class Light:
             raise InputError(
                 f"light.ambient_w_m2 must lie between 0 and 1e6, got {self.ambient:g}."
             )
+        if not 0 <= self.speckle <= 1:
+            raise InputError(f"light.speckle must lie between 0 and 1, got {self.speckle:g}.")
         if not 0 <= self.streaks <= 1:
             raise InputError(
                 f"light.streaks_percent must lie between 0 and 100, got {100 * self.streaks:g}."
@@ -108,9 +112,14 @@ class Beam:
         width = np.linalg.norm(self._across(angles, ranges), axis=1)
         return self.power_per_angle(angles) / np.maximum(width, 1e-6)
 
-    def irradiance(self, where: FanCoordinates) -> Scalars:
-        """Give the power through a square metre across the beam, in clear water [W/m²]."""
-        thickness = self.thickness(where.range)
+    def irradiance(self, where: FanCoordinates, spread: Scalars | float = 0.0) -> Scalars:
+        """Give the power through a square metre across the beam, in clear water [W/m²].
+
+        Args:
+            where: The places.
+            spread: How far light goes on under the surface there, across the sheet [m], 1σ.
+        """
+        thickness = np.hypot(self.thickness(where.range), spread)
         profile = np.exp(-0.5 * (where.distance / thickness) ** 2)
         line = self.line_power(where.angle, where.range)
         return line * profile / (thickness * math.sqrt(2 * math.pi))

@@ -4,9 +4,16 @@ from pydantic import FiniteFloat
 
 from .beam import Light
 from .overlay import Overlay
-from .sensor import FACTORS, KEYS, Codec, Colour, Sensor
+from .processing import Processing
+from .recorder import Codec, Recorder
+from .sensor import FACTORS, KEYS, Colour, Sensor
 from .table import Table
 from .window import Window
+
+_OF_OTHERS = {
+    "gamma", "sharpening", "sharpening_px", "denoise", "codec", "crf", "bitrate_mbit_s", "quality",
+}  # fmt: skip
+"""Keys of [sensor] that are no sensor's but its camera's and recorder's."""
 
 
 class LightTable(Table):
@@ -17,6 +24,7 @@ class LightTable(Table):
     waist_mm: FiniteFloat = 1.0
     ambient_w_m2: FiniteFloat = 0.0
     streaks_percent: FiniteFloat = 0.0
+    speckle: FiniteFloat = 0.0
     laser_on: bool = True
 
     def as_light(self) -> Light:
@@ -27,6 +35,7 @@ class LightTable(Table):
             self.waist_mm / 1e3,
             self.ambient_w_m2,
             self.streaks_percent / 100,
+            self.speckle,
             self.laser_on,
         )
 
@@ -78,12 +87,27 @@ class SensorTable(Table):
     peak_grey: FiniteFloat | None = None
     interlaced: bool = False
     colour: Colour = "mono"
+    gamma: FiniteFloat = 1.0
+    sharpening: FiniteFloat = 0.0
+    sharpening_px: FiniteFloat = 1.0
+    denoise: FiniteFloat = 0.0
     codec: Codec = "png"
     crf: int = 23
+    bitrate_mbit_s: FiniteFloat | None = None
+    quality: int = 5
+
+    def as_processing(self) -> Processing:
+        """Give what the camera's processor does."""
+        return Processing(self.gamma, self.sharpening, self.sharpening_px)
+
+    def as_recorder(self) -> Recorder:
+        """Give what the recorder does."""
+        bitrate = None if self.bitrate_mbit_s is None else 1e6 * self.bitrate_mbit_s
+        return Recorder(self.codec, self.crf, bitrate, self.quality, self.denoise)
 
     def as_sensor(self) -> Sensor:
         """Give the sensor."""
-        values = self.model_dump()
+        values = self.model_dump(exclude=_OF_OTHERS)
         for field, key in KEYS.items():
             values[field] = values.pop(key) / FACTORS.get(field, 1.0)
         return Sensor(**values)

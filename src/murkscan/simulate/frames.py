@@ -132,6 +132,7 @@ class Simulator:
         electrons = self.window.pass_light(light.total) * self.electrons + self.dark
         noise = np.random.default_rng([scene.seed, 0, number])
         image = expose(scene.sensor, scene.as_field(electrons, number), noise)
+        image = scene.processing.process(image, scene.sensor.white)
         time = float(scene.times[number] - scene.times[0])
         over = scene.overlay.draw(scene.rig.camera.size, time, scene.sensor.white)
         image = write_over(image, scene.as_field(over, number))

@@ -14,6 +14,7 @@ from .reflected import draw_mirrored, mirror
 from .scene import Scene
 from .sensor import Picture, blur_lens
 from .snow_image import draw_snow, places_in_light
+from .speckle import draw_speckle
 from .stripe_image import Rendering, draw_line, widths_of
 
 _PIXEL = 1 / 12
@@ -30,6 +31,8 @@ class LineImage:
     """Its derivative by the stripe's position along the scan line [W/m²/sr/px]."""
     glow: Picture
     """Light of the water that the laser lights, and of its particles [W/m²/sr]."""
+    speckle: Picture
+    """What interference adds to the stripe or takes from it [W/m²/sr]."""
     mask: Picture
     """Share of each pixel's sheet that is lit and in sight."""
     line: LitLine
@@ -42,7 +45,7 @@ class LineImage:
     @property
     def total(self) -> Picture:
         """The sum [W/m²/sr]."""
-        return self.stripe + self.glow
+        return self.stripe + self.speckle + self.glow
 
 
 def draw_laser(
@@ -61,8 +64,9 @@ def draw_laser(
     glow = mask * laser.glow
     if snow_density > 0:
         glow += _draw_snow(scene, laser, view, mask, snow_density, time=scene.times[number])
-    light = LineImage(stripe, slope, glow, mask, line, second, widths)
-    return _spread(laser, _add_spots(scene, laser, light, spots))
+    light = LineImage(stripe, slope, glow, np.zeros_like(stripe), mask, line, second, widths)
+    light = _add_spots(scene, laser, light, spots)
+    return _spread(laser, _add_speckle(scene, light, number))
 
 
 def _draw_stripe(
@@ -96,6 +100,20 @@ def _add_spots(scene: Scene, laser: LaserView, light: LineImage, spots: Picture)
     spots = blur_lens(spots, scene.sensor.composite, scene.sensor.field_blur)
     slope = light.slope - _gradient(laser, spots)
     return replace(light, stripe=light.stripe + spots, slope=slope)
+
+
+def _add_speckle(scene: Scene, light: LineImage, number: int) -> LineImage:
+    """Let the light that water has not scattered interfere."""
+    if scene.light.speckle == 0:
+        return light
+    factor = draw_speckle(
+        scene.rig.camera.size,
+        scene.light.speckle,
+        spot=scene.sensor.psf,
+        place=scene.pose(number).translation,
+        seed=scene.seed,
+    )
+    return replace(light, speckle=light.stripe * (factor - 1))
 
 
 def _spread(laser: LaserView, light: LineImage) -> LineImage:

@@ -15,6 +15,8 @@ from ..types.trajectory import Trajectory
 from .beam import Light
 from .overlay import Overlay
 from .particles import Particles
+from .processing import Processing
+from .recorder import Recorder
 from .sensor import Sensor
 from .surface import Body, Surroundings
 from .vehicle import Navigation
@@ -43,7 +45,9 @@ class Scene:
     sensor: Sensor = field(default_factory=Sensor)
     particles: Particles = field(default_factory=Particles)
     window: Window = field(default_factory=Window)
+    processing: Processing = field(default_factory=Processing)
     overlay: Overlay = field(default_factory=Overlay)
+    recorder: Recorder = field(default_factory=Recorder)
     glow: bool = True
     """Whether the sheet's own glow is drawn."""
     forward_scattering: bool = True
@@ -64,6 +68,11 @@ class Scene:
             )
         if len(self.times) == 0:
             raise InputError("motion.frames must be at least 1.")
+        if self.recorder.codec != "png" and self.sensor.bits > 8:
+            raise InputError(
+                f"sensor.codec {self.recorder.codec} keeps 8 bits, but sensor.bits is "
+                f"{self.sensor.bits}; keep deeper pictures as png."
+            )
 
         width, height = self.rig.camera.size
         if width * height > _MOST_PIXELS:

@@ -151,7 +151,9 @@ def _as_scene(table: SceneTable, name: str, folder: Path) -> Scene:
         sensor=sensor,
         particles=table.water.as_particles(),
         window=table.window.as_window(),
+        processing=table.sensor.as_processing(),
         overlay=table.overlay.as_overlay(),
+        recorder=table.sensor.as_recorder(),
         glow=table.water.glow,
         forward_scattering=table.water.forward_scattering,
         navigation=None

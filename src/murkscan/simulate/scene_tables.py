@@ -38,6 +38,7 @@ class SurfaceTable(OpenTable):
 
     texture: str = "plain"
     gloss: FiniteFloat = 0.0
+    translucency_mm: FiniteFloat = 0.0
 
     def as_texture(self, key: str) -> AbstractTexture:
         """Give the texture, with its settings."""
@@ -65,7 +66,9 @@ class ObjectTable(OpenTable):
         turn = Rotation.from_euler("xyz", self.rotation_deg, degrees=True).as_matrix()
         pose = Pose(turn, np.array(self.position_mm) / 1e3)
         where = "surface" if self.surface is None else f"{key}.surface"
-        return Body(self._as_mesh(key, folder), pose, own.as_texture(where), own.gloss)
+        texture = own.as_texture(where)
+        mesh = self._as_mesh(key, folder)
+        return Body(mesh, pose, texture, own.gloss, own.translucency_mm / 1e3)
 
     def _as_mesh(self, key: str, folder: Path) -> Mesh:
         if self.mesh in SHAPES:

@@ -14,7 +14,6 @@ from ..types.camera import Camera
 
 Picture = Float32[np.ndarray, "h w"]
 Colour = Literal["mono", "rggb", "bggr", "grbg", "gbrg"]
-Codec = Literal["png", "ffv1", "h264"]
 
 _BOUNDS = (
     ("full_well", 10, 1e7),
@@ -31,7 +30,6 @@ _BOUNDS = (
     ("response", 0, 0.5),
     ("hot_pixels", 0, 0.5),
     ("row_noise", 0, 1e4),
-    ("crf", 0, 51),
 )
 """What cameras there are; a blur below 0.3 px would be sharper than its own pixels."""
 KEYS = {
@@ -58,7 +56,7 @@ _PHOTON = 6.62607015e-34 * 299792458.0
 
 @dataclass(frozen=True)
 class Sensor:
-    """A camera's sensor and lens, and how its pictures are kept.
+    """A camera's sensor and lens.
 
     References:
         EMVA Standard 1288, release 4.0 (linear camera model: photons, electrons, grey levels).
@@ -103,10 +101,6 @@ class Sensor:
     """Whether odd and even rows are exposed half a picture apart."""
     colour: Colour = "mono"
     """One grey level a pixel, or a colour filter array by its first four pixels."""
-    codec: Codec = "png"
-    """How the recording is kept: a folder of pictures, or a video."""
-    crf: int = 23
-    """Quality of H.264, 0 (best) to 51."""
 
     def __post_init__(self) -> None:
         """Refuse a sensor that cannot be."""
@@ -127,14 +121,8 @@ class Sensor:
                 f"sensor.peak_grey must lie above 0 and not above {_OVEREXPOSED:g} times the grey "
                 f"levels above black, {room:g}, got {self.peak_grey:g}."
             )
-        for name, choices in (("colour", get_args(Colour)), ("codec", get_args(Codec))):
-            if getattr(self, name) not in choices:
-                raise InputError(f"sensor.{name} must be one of {', '.join(choices)}.")
-        if self.codec != "png" and self.bits > 8:
-            raise InputError(
-                f"sensor.codec {self.codec} keeps 8 bits, but sensor.bits is {self.bits}; keep "
-                "deeper pictures as png."
-            )
+        if self.colour not in get_args(Colour):
+            raise InputError(f"sensor.colour must be one of {', '.join(get_args(Colour))}.")
         if self.interlaced and self.colour != "mono":
             raise InputError(
                 "sensor.interlaced goes with sensor.colour mono: a mosaic has no fields."

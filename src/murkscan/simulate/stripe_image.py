@@ -50,7 +50,10 @@ def widths_of(scene: Rendering, line: LitLine) -> Scalars:
         points = rays.origins + ranges[:, None] * rays.directions
         distances.append(scene.beam.locate(points))
     growth = np.abs(distances[1].distance - distances[0].distance) / (2 * step)
-    thickness = scene.beam.thickness(np.nan_to_num(distances[0].range))
+    thickness = np.hypot(
+        scene.beam.thickness(np.nan_to_num(distances[0].range)),
+        scene.surroundings.translucency(line.face),
+    )
     with np.errstate(divide="ignore", invalid="ignore"):
         widths = thickness / growth
     return np.clip(np.nan_to_num(widths, nan=_THICKEST), _THINNEST, _THICKEST)
@@ -114,7 +117,9 @@ def _radiance(scene: Rendering, rays: Rays, hits: Hits) -> Scalars:
     normals = scene.surroundings.caster.normals[hits.face] @ scene.pose.rotation
     facing = -np.einsum("ij,ij->i", normals, lit_along)
     viewed = -np.einsum("ij,ij->i", normals, rays.directions)
-    light = np.where(facing * viewed > 0, np.nan_to_num(scene.beam.irradiance(where)), 0.0)
+    spread = scene.surroundings.translucency(hits.face)
+    light = np.nan_to_num(scene.beam.irradiance(where, spread))
+    light = np.where(facing * viewed > 0, light, 0.0)
     bright = np.flatnonzero(light > 1e-9 * light.max(initial=0.0))
     lit = Rays(starts[bright], lit_along[bright])
     free = scene.surroundings.caster.is_free(to_world(lit, scene.pose), way[bright])

@@ -24,6 +24,14 @@ class Body:
     """Albedo by place, in the object's frame."""
     gloss: float = 0.0
     """Share of the light that is mirrored, 0 (mat) to 1."""
+    translucency: float = 0.0
+    """How far light goes on under the surface before it comes out, across the sheet [m], 1σ: in
+    plastic, marble and sponges, which turn a thin line into a broad band.
+
+    References:
+        Jensen, Marschner, Levoy and Hanrahan, A practical model for subsurface light transport,
+        SIGGRAPH 2001.
+    """
 
     def __post_init__(self) -> None:
         """Refuse an object without a surface."""
@@ -33,6 +41,11 @@ class Body:
             raise InputError("object.mesh has vertices that are not finite; mend the mesh.")
         if not 0 <= self.gloss <= 1:
             raise InputError(f"surface.gloss must lie between 0 and 1, got {self.gloss:g}.")
+        if not 0 <= self.translucency <= 0.1:
+            raise InputError(
+                f"surface.translucency_mm must lie between 0 and 100, got "
+                f"{1e3 * self.translucency:g}."
+            )
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +81,10 @@ class Surroundings:
     def gloss(self, face: Indices) -> Scalars:
         """Give the share of light that these triangles mirror."""
         return np.array([body.gloss for body in self.bodies])[self._owner[face]]
+
+    def translucency(self, face: Indices) -> Scalars:
+        """Give how far light goes on under these triangles [m], 1σ."""
+        return np.array([body.translucency for body in self.bodies])[self._owner[face]]
 
     @cached_property
     def _owner(self) -> Indices:

@@ -81,12 +81,13 @@ def simulate_recording(
         _keeping(scene, out) as (recording, keep),
         writing_true_stripes(out / "truth" / "stripes.parquet") as tell,
     ):
-        stripes, fields = [], []
+        stripes, fields, kept = [], [], None
         for frame in _draw_ahead(simulator):
             fields.append(frame.frame.image)
             if len(fields) == scene.row_step:
                 first = frame.frame.index + 1 - scene.row_step
-                keep(_weave(scene, fields), float(scene.times[first]))
+                kept = scene.recorder.smooth(_weave(scene, fields), kept, scene.sensor.white)
+                keep(kept, float(scene.times[first]))
                 fields.clear()
             stripes.append(frame.stripe)
             centres += len(frame.stripe)
@@ -161,24 +162,26 @@ def _as_logged(scene: Scene, way: Trajectory) -> Trajectory:
 
 @contextmanager
 def _keeping(scene: Scene, out: Path) -> Iterator[tuple[Path, Keep]]:
-    """Keep pictures as the scene's sensor says."""
-    sensor, pictures = scene.sensor, scene.times[:: scene.row_step]
-    if sensor.codec != "png":
+    """Keep pictures as the scene's recorder does."""
+    recorder, pictures = scene.recorder, scene.times[:: scene.row_step]
+    if recorder.codec != "png":
         path = out / "recording.mkv"
         rate = 1 / float(np.median(np.diff(pictures))) if len(pictures) > 1 else 25.0
         if rate > _FASTEST:
             raise InputError(
-                f"sensor.codec {sensor.codec}: times in milliseconds are too coarse for "
+                f"sensor.codec {recorder.codec}: times in milliseconds are too coarse for "
                 f"motion.frame_rate_hz {rate:g}; keep the pictures as png."
             )
         with writing_video(
             path,
             scene.rig.camera.size,
             rate=rate,
-            codec=sensor.codec,
-            crf=sensor.crf,
-            interlaced=sensor.interlaced,
-            is_colour=sensor.colour != "mono",
+            codec=recorder.codec,
+            crf=recorder.crf,
+            bitrate=recorder.bitrate,
+            quality=recorder.quality,
+            interlaced=scene.sensor.interlaced,
+            is_colour=scene.sensor.colour != "mono",
         ) as write:
             yield path, write
         return
