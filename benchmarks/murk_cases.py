@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from murk_match import VISIBLE
+from murk_match import REACH, VISIBLE
 from murk_rows import ROWS
 from murk_traced import FRAMES, is_possible, trace_recording
 
@@ -90,6 +90,11 @@ class Part:
     def visible(self) -> float:
         """Bound of a scan line up to which a true centre counts as visible [px]."""
         return ROWS[self.case].visible if self.case in ROWS else VISIBLE
+
+    @property
+    def reach(self) -> float:
+        """Distance from a true centre up to which a found one is right [px]."""
+        return ROWS[self.case].reach if self.case in ROWS else REACH
 
     def scene(self) -> Scene:
         """Make the scene: pictures from the middle of the hull, with paint of the seed's own."""

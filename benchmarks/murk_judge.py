@@ -10,6 +10,9 @@ from murk_match import VISIBLE, Matched, scan_line
 
 BOUNDS = (0.1, 0.3, VISIBLE)
 """Bounds of a scan line by which recall is told [px]."""
+DEEP = (2.0, 4.6, 10.0)
+"""Further bounds, where it is asked for what no single scan line shows [px]."""
+DEEP_BINS = ("0.5–2", "2–4.6", "4.6–10")
 _SURE = 0.3
 """Bound up to which errors are held against it [px]."""
 _MEDIAN = 0.6745
@@ -34,10 +37,8 @@ def judge(matched: Matched, lines: int) -> dict[str, Any]:
     """
     seen, hit, error = matched.is_visible, matched.is_hit, matched.error
     crlb = matched.truth.crlb
-    within = [
-        (low < crlb) & (crlb <= high)
-        for low, high in zip((-1, *BOUNDS), (*BOUNDS, math.inf), strict=False)
-    ]
+    edges = (*BOUNDS, *DEEP, math.inf)
+    within = [(low < crlb) & (crlb <= high) for low, high in zip((-1, *edges), edges, strict=False)]
     sure = seen & hit & (crlb <= _SURE)
     known = np.flatnonzero(seen & hit)
     sigma = matched.found.sigma[matched.found_of_truth[known]]
@@ -46,6 +47,7 @@ def judge(matched: Matched, lines: int) -> dict[str, Any]:
         "visible": [int((seen & one).sum()) for one in within],
         "hit": [int((seen & hit & one).sum()) for one in within],
         "lines": lines,
+        "lasers": [int(matched.is_of_its_laser.sum()), int(matched.is_right.sum())],
         "holes": _count_in_holes(matched),
         "found": len(matched.found),
         "right": int(matched.is_right.sum()),
@@ -93,11 +95,12 @@ def pool(parts: list[dict[str, Any]]) -> dict[str, float]:
     visible, hit = _sum(parts, "visible"), _sum(parts, "hit")
     inside, known = _sum(parts, "within")
     figures = {"recall": _share(hit.sum(), visible.sum())}
-    for k, name in enumerate(("≤ 0.1", "0.1–0.3", "0.3–0.5")):
+    for k, name in enumerate(("≤ 0.1", "0.1–0.3", "0.3–0.5", *DEEP_BINS)):
         figures[f"recall {name}"] = _share(hit[k], visible[k])
     right, found = _sum(parts, "right"), _sum(parts, "found")
     figures["precision"] = _share(right, found)
     figures["false"] = 1e4 * float((found - right) / _sum(parts, "lines"))
+    figures["lasers"] = _share(*_sum(parts, "lasers"))
     figures["in holes"] = _share(*_sum(parts, "holes"))
     for name in ("ratio", "bias", "mean", "absolute"):
         figures[name] = _mean([part[name] for part in parts])

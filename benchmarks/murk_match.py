@@ -52,6 +52,12 @@ class Matched:
         return ~self.truth.is_reflected & known
 
     @property
+    def is_of_its_laser(self) -> np.ndarray:
+        """Which of the right found centres are told as the laser's whose they are."""
+        right = np.flatnonzero(self.is_right)
+        return self.found.laser[right] == self.truth.laser[self.truth_of_found[right]]
+
+    @property
     def error(self) -> np.ndarray:
         """Signed error of each true centre along its scan line [px]; NaN where it is missed."""
         error = np.full(len(self.truth), np.nan)
@@ -73,14 +79,19 @@ def pick_frames(truth: TrueStripe, frames: list[int]) -> TrueStripe:
 
 
 def match_stripes(
-    found: Stripe, truth: TrueStripe, albedo: np.ndarray, *, visible: float = VISIBLE
+    found: Stripe,
+    truth: TrueStripe,
+    albedo: np.ndarray,
+    *,
+    visible: float = VISIBLE,
+    reach: float = REACH,
 ) -> Matched:
     """Pair each found centre with the true one nearest to it, one to one, nearest pairs first.
 
     Only centres of the line itself can be paired: where gloss throws a second line, a point there
     would be triangulated to where no surface is.
     """
-    a, b, away = _pairs(found, truth)
+    a, b, away = _pairs(found, truth, reach)
     of_found, of_truth = np.full(len(found), -1), np.full(len(truth), -1)
     for i in np.argsort(away, kind="stable"):
         if of_found[a[i]] < 0 and of_truth[b[i]] < 0:
@@ -88,7 +99,9 @@ def match_stripes(
     return Matched(found, truth, albedo, of_found, of_truth, visible)
 
 
-def _pairs(found: Stripe, truth: TrueStripe) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _pairs(
+    found: Stripe, truth: TrueStripe, reach: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Give all pairs within reach in one scan line: found, true, and their distance [px]."""
     direct = np.flatnonzero(~truth.is_reflected)
     place = scan_line(truth.frame, truth.pixels)[direct]
@@ -99,7 +112,7 @@ def _pairs(found: Stripe, truth: TrueStripe) -> tuple[np.ndarray, np.ndarray, np
     a = np.repeat(np.arange(len(found)), high - low)
     b = direct[np.arange(len(a)) - np.repeat(np.cumsum(high - low) - high, high - low)]
     away = np.abs(found.pixels[a, 1] - truth.pixels[b, 1])
-    near = away <= REACH
+    near = away <= reach
     return a[near], b[near], away[near]
 
 

@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 from murkscan.geometry.ray_casting import RayCaster
 from murkscan.simulate import Body
 from murkscan.simulate.shapes import Stairs
-from murkscan.simulate.shapes.solids import grid_faces
+from murkscan.simulate.shapes.solids import grid_faces, join_meshes
 from murkscan.simulate.textures import Plain
 from murkscan.types.mesh import Mesh
 from murkscan.types.pose import Pose
@@ -86,3 +86,62 @@ def _stand(point: np.ndarray, normal: np.ndarray, size: tuple[float, float, floa
     origin = point - normal * _BURIED + turn @ np.array([0.0, -length / 2, 0.0])
     block = Stairs(width, length, (height + _BURIED,)).mesh()
     return Body(block, Pose(turn, origin), Plain(_ALBEDO))
+
+
+def grating(width: float, spacing: float) -> Mesh:
+    """Make upright bars at 0.8 m, each standing a little before or behind its neighbours [m]."""
+    middles = np.arange(-24, 25) * spacing
+    bars = []
+    for number, x in enumerate(middles):
+        bar = Stairs(width, 3.2, (width,)).mesh()
+        bars.append(_moved(bar, [x, -1.6, 0.8 + 0.01 * (number % 3)], back=width))
+    return join_meshes(bars)
+
+
+def chains() -> Mesh:
+    """Make chains that hang at 0.8 m, of links of 8 mm steel, 56 mm long."""
+    link = _link(0.004, 0.012, 0.010)
+    upright = Rotation.from_euler("y", 90, degrees=True).as_matrix()
+    links = []
+    for x in np.arange(-6, 7) * 0.09:
+        for number, y in enumerate(np.arange(-1.5, 1.5, 0.036)):
+            turn = np.eye(3) if number % 2 else upright
+            links.append(Mesh(link.vertices @ turn.T + [x, y, 0.8], link.faces))
+    return join_meshes(links)
+
+
+def blades() -> Mesh:
+    """Make propellers of six thin blades on a boss, 0.36 m across, side by side along the way."""
+    blade = Stairs(0.07, 0.15, (0.003,)).mesh()
+    blade = Mesh(blade.vertices * [1, 1, 0.04], blade.faces)
+    pitch = Rotation.from_euler("y", 35, degrees=True).as_matrix()
+    boss = _link(0.012, 0.012, 0.0)
+    parts = []
+    for y in np.arange(-1.4, 1.5, 0.4):
+        place = np.array([0, y, 0.82])
+        parts.append(Mesh(boss.vertices + place, boss.faces))
+        for number in range(6):
+            around = Rotation.from_euler("z", 60 * number, degrees=True).as_matrix()
+            vertices = (blade.vertices @ pitch.T + [0, 0.03, 0]) @ around.T
+            parts.append(Mesh(vertices + place, blade.faces))
+    return join_meshes(parts)
+
+
+def _link(wire: float, radius: float, straight: float) -> Mesh:
+    """Make a ring of round wire in x and y, drawn out along y by a straight piece on both sides."""
+    around = np.linspace(0, 2 * np.pi, 48, endpoint=False)
+    about = np.linspace(0, 2 * np.pi, 16, endpoint=False)
+    out = radius + wire * np.cos(about)
+    x = np.cos(around)[:, None] * out
+    y = np.sin(around)[:, None] * out + straight * np.sign(np.sin(around + 1e-9))[:, None]
+    z = np.broadcast_to(wire * np.sin(about), x.shape)
+    number = np.arange(x.size).reshape(x.shape)
+    number = np.pad(number, ((0, 1), (0, 1)), mode="wrap")
+    return Mesh(np.stack([x, y, z], axis=-1).reshape(-1, 3), grid_faces(number))
+
+
+def _moved(mesh: Mesh, to: list[float], *, back: float) -> Mesh:
+    """Move a block, and cut it off so far behind its face: its own back is as long as its tread."""
+    vertices = mesh.vertices.copy()
+    vertices[:, 2] = np.minimum(vertices[:, 2], back)
+    return Mesh(vertices + to, mesh.faces)

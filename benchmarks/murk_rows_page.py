@@ -4,8 +4,9 @@ import math
 from typing import Any
 
 from harness import Figure
+from murk_judge import DEEP_BINS
 from murk_plot import LABELS, STYLES
-from murk_rows import ROWS, Row
+from murk_rows import ROWS, TWO_LASERS, Row
 
 Pooled = dict[str, dict[str, dict[str, float]]]
 
@@ -19,7 +20,19 @@ it aside; *pixels*, 0.2 % of them hot, a response that differs by 1 %, noise of 
 each row has in common; *streaks* of 10 % in the fan; *border*, a frame of one pixel of grey 150.
 *Still*: a flat wall with holes at a constant distance, so that the stripe stands still, too. *Off*,
 *sea* and *c10* have nothing to be found: the laser is off; there is no object; the water has 10
-attenuations a metre and the lamp of c = 6. There *false* counts points in 10 000 scan lines."""
+attenuations a metre and the lamp of c = 6. There *false* counts points in 10 000 scan lines.
+
+*Wide8*, *wide14*: the sheet is so thick, 1σ in pixels, and white over much of it; white centres
+count as visible. *Widths*: the things are of white plastic, under which light goes on. *Speckle5*
+and *7*: of contrast .5 and .7, another one in each frame. *Isp*: a gamma of .45 and sharpening.
+*Denoise*: a recorder that takes .8 of the picture before where little changed. *h264-2.8*,
+*h265-2.8*: at 2.8 Mbit/s; *mjpeg*: quantiser 5; *h264-hd*: 1920 × 1200 at crf 32; *h265-hd*: at
+4 Mbit/s. *Lamp20*: a lamp on the vehicle, the stripe a fifth as high as what it stands on, paint
+uneven by 5 %; *lamp100*: as high, and 20 %. *Roll45*, *roll63*: the laser turned by as much about
+the camera's axis. *Grating*, *chain*, *blades* before a wall, rolled by 45°, where scan lines have
+several branches; *pieces*: thin bars before nothing. *Bubbles*: 150 in the sheet, of 2 mm, rising.
+*Crossed*, *beside*: two lasers. *c5-dim*, *c7*, *c8*: recall for bounds of .5 to 2, 2 to 4.6 and
+4.6 to 10 px, right within 3 px, and precision."""
 
 
 def rows_table(pooled: Pooled) -> str:
@@ -47,6 +60,7 @@ def rows_figures(pooled: Pooled, champion: str) -> list[Figure]:
             name = f"{case}: false points in 10 000 scan lines"
             figures.append(Figure(name, one["false"], at_most=row.false))
             continue
+        figures += _deep_figures(case, row, one) + _laser_figures(case, one)
         figures += [
             Figure(f"{case}: recall", 100 * one["recall"], "%", at_least=row.recall),
             Figure(f"{case}: precision", 100 * one["precision"], "%", at_least=row.precision),
@@ -59,14 +73,35 @@ def rows_figures(pooled: Pooled, champion: str) -> list[Figure]:
     return [figure for figure in figures if not math.isnan(figure.value)]
 
 
+def _deep_figures(case: str, row: Row, one: dict[str, float]) -> list[Figure]:
+    return [
+        Figure(f"{case}: recall, bound {name} px", 100 * one[f"recall {name}"], "%", at_least=bar)
+        for name, bar in zip(DEEP_BINS, row.deep, strict=False)
+        if bar is not None
+    ]
+
+
+def _laser_figures(case: str, one: dict[str, float]) -> list[Figure]:
+    """Give the share of right points that are told under the laser whose they are."""
+    share = 100 * one["lasers"]
+    return [Figure(f"{case}: under the right laser", share, "%", at_least=99.0)] * (
+        case in TWO_LASERS
+    )
+
+
 def _bar(row: Row) -> str:
     if row.false is not None:
         return f"false < {row.false:g}"
+    if row.deep:
+        asked = " / ".join("–" if bar is None else f"≥ {bar:g}" for bar in row.deep)
+        return f"{asked}; P ≥ {row.precision:g}"
     return f"≥ {row.recall:g} / ≥ {row.precision:g}"
 
 
 def _cell(row: Row, one: dict[str, Any]) -> str:
     if row.false is not None:
         return f"false {one['false']:.1f}"
-    figures = (one["recall"], one["precision"], one["in holes"])
+    figures: tuple[float, ...] = (one["recall"], one["precision"], one["in holes"])
+    if row.deep:
+        figures = (*(one[f"recall {name}"] for name in DEEP_BINS), one["precision"])
     return " / ".join("–" if math.isnan(x) else f"{100 * x:.1f}" for x in figures)

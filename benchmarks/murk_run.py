@@ -28,15 +28,16 @@ def judge_part(part: Part, name: str, finder: AbstractExtractor, cache: Path) ->
     start = time.process_time()
     frames = list(recording.frames())
     decode = time.process_time() - start
-    background = finder.learn(recording.sample(_LEARNT_FROM), rig)
     if isinstance(finder, Foreign):
         frames = frames[::STEP]
-    else:
-        list(finder.extract(frames[:_WARM], rig, background))
-    found, seconds = _extract(finder, frames, rig, background)
+    sample = recording.sample(_LEARNT_FROM)
+    runs = [_extract(finder, frames, sample, rig, laser) for laser in range(len(rig.lasers))]
+    found = Stripe.concatenate([stripe for stripe, _ in runs])
+    seconds = {name: sum(spent[name] for _, spent in runs) for name in ("extract", "clock")}
+    seconds["frames"] = len(frames)
     truth = pick_frames(recorded.truth, [frame.index for frame in frames])
     lines = len(frames) * rig.camera.size[0]
-    matched = match_stripes(found, truth, part.paint(truth), visible=part.visible)
+    matched = match_stripes(found, truth, part.paint(truth), visible=part.visible, reach=part.reach)
     result = judge(matched, lines)
     result["seconds"] = seconds | {"decode": decode}
     path = cache / part.name / _JUDGED / f"{name}.json"
@@ -46,13 +47,16 @@ def judge_part(part: Part, name: str, finder: AbstractExtractor, cache: Path) ->
 
 
 def _extract(
-    finder: AbstractExtractor, frames: list[Frame], rig: Any, background: Any
+    finder: AbstractExtractor, frames: list[Frame], sample: list[Frame], rig: Any, laser: int
 ) -> tuple[Stripe, dict[str, float]]:
-    """Find the stripe in all frames, and take the processor's time and the clock's [s]."""
+    """Find one laser's stripe in all frames; take the processor's time and the clock's [s]."""
+    background = finder.learn(sample, rig, laser=laser)
+    if not isinstance(finder, Foreign):
+        list(finder.extract(frames[:_WARM], rig, background, laser=laser))
     clock, start = time.perf_counter(), time.process_time()
-    found = Stripe.concatenate(list(finder.extract(frames, rig, background)))
+    found = Stripe.concatenate(list(finder.extract(frames, rig, background, laser=laser)))
     spent, passed = time.process_time() - start, time.perf_counter() - clock
-    return found, {"extract": spent, "clock": passed, "frames": len(frames)}
+    return found, {"extract": spent, "clock": passed}
 
 
 def load_results(cache: Path) -> dict[str, dict[str, dict[Part, dict[str, Any]]]]:

@@ -1,6 +1,7 @@
 """How much light arrives, and where: laws that hold whatever draws it."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from murkscan.calibrate import Chessboard as Board
 from murkscan.calibrate import find_board
 from murkscan.optics import project
 from murkscan.optics.medium import Medium
-from murkscan.simulate import Body, Light, Sensor, Simulator, load_scene
+from murkscan.simulate import Body, Lamp, Light, Sensor, Simulator, load_scene
 from murkscan.simulate.shapes import Chessboard, Plane, Sphere
 from murkscan.simulate.textures import Checkered, Plain
 from murkscan.types.pose import Pose
@@ -149,3 +150,28 @@ def test_two_lasers_draw_two_lines():
     scene = standing(body(Plane(8.0, 8.0), (0, 0, 0.6)), rig=Rig(air_rig().camera, (first, second)))
     stripe = Simulator.of(scene).draw_frame(0).stripe
     assert np.bincount(stripe.laser).tolist() == [720, 720]
+
+
+def test_a_lamp_lights_a_wall_by_the_inverse_square_and_lambert():
+    lamp = Lamp(power=3.0, position=(0.0, 0.0, 0.0), half_angle=math.radians(60))
+    scene = standing(wall(0.6, albedo=0.4), light=Light(lamp=lamp))
+    seen = Simulator.of(scene).draw_light(0).ambient
+    # Half as bright at 60 degrees: intensity is 3 W / pi times the cosine, as of a mat disc.
+    for u in (360, 560):
+        cosine = 554 / math.hypot(554, u - 359.5, 0.5)
+        expected = 0.4 / math.pi * 3.0 / math.pi * cosine**4 / 0.6**2
+        assert seen[287, u] == pytest.approx(expected, rel=1e-3)
+
+
+def test_water_before_a_lamp_shines_and_takes_its_light():
+    lamp = Lamp(power=3.0)
+    clear, murky = (
+        Simulator.of(standing(wall(0.6, albedo=albedo), light=Light(lamp=lamp), medium=medium))
+        .draw_light(0).ambient[287, 360]
+        for albedo, medium in ((0.4, None), (0.4, Medium(2.0)))
+    )  # fmt: skip
+    black = standing(wall(0.6, albedo=1e-9), light=Light(lamp=lamp), medium=Medium(2.0))
+    veil = Simulator.of(replace(black, rig=Rig(air_rig().camera))).draw_light(0).ambient[287, 360]
+    assert veil > 0
+    way = 0.6 + math.hypot(0.25, 0.1, 0.6)
+    assert murky - veil == pytest.approx(clear * math.exp(-2.0 * way), rel=2e-3)

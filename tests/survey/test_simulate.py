@@ -82,7 +82,7 @@ def test_the_same_scene_and_seed_give_the_same_bytes(written, tmp_path):
     ).read_bytes()
 
 
-@pytest.mark.parametrize("codec", ["ffv1", "h264"])
+@pytest.mark.parametrize("codec", ["ffv1", "h264", "h265"])
 def test_a_video_keeps_the_grey_levels(codec, tmp_path, written):
     scene, _ = _scene([("peak_grey = 200", f'peak_grey = 200\ncodec = "{codec}"\ncrf = 12')])
     made = simulate_recording(scene, tmp_path)

@@ -5,6 +5,7 @@ from .frames import LightImage as LightImage
 from .frames import SimulatedFrame as SimulatedFrame
 from .frames import Simulator as Simulator
 from .frames import simulate_frames as simulate_frames
+from .lamp import Lamp as Lamp
 from .line_image import LineImage as LineImage
 from .overlay import Overlay as Overlay
 from .particles import Particles as Particles

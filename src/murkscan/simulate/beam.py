@@ -1,7 +1,7 @@
 """The laser's light on its way through the water: where it goes, how thick and how strong it is."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -12,6 +12,7 @@ from ..optics import as_fan, locate_on_fan, trace_fan
 from ..types.arrays import Directions, Points, Scalars
 from ..types.laser import Fan, FanCoordinates, Laser
 from ..types.rays import Rays
+from .lamp import Lamp
 
 _NUM_ANGLES = 4001
 """Rays by which the fan's spreading is tabled."""
@@ -40,12 +41,19 @@ class Light:
     """Thickness of the sheet at its source, full width at 1/e² [m]."""
     ambient: float = 0.0
     """Irradiance by daylight or lamps, in the laser's colour, on every surface [W/m²]."""
+    lamp: Lamp = field(default_factory=Lamp)
+    """On the vehicle."""
     streaks: float = 0.0
     """How uneven the fan is along its angle, 1σ, as a share: dust and grooves on its optics."""
     speckle: float = 0.0
     """Contrast of the stripe's speckle: its standard deviation as a share of its mean."""
     is_on: bool = True
     """Whether the lasers shine; exposure is set as if they did."""
+
+    @property
+    def shows_objects(self) -> bool:
+        """Whether anything but the lasers lights the scene."""
+        return self.ambient > 0 or self.lamp.power > 0
 
     def __post_init__(self) -> None:
         """Refuse light that cannot be."""

@@ -1,8 +1,11 @@
 """The tables of scene.toml from the light to the picture, with their units."""
 
+import math
+
 from pydantic import FiniteFloat
 
 from .beam import Light
+from .lamp import Lamp
 from .overlay import Overlay
 from .processing import Processing
 from .recorder import Codec, Recorder
@@ -16,6 +19,19 @@ _OF_OTHERS = {
 """Keys of [sensor] that are no sensor's but its camera's and recorder's."""
 
 
+class LampTable(Table):
+    """[light.lamp]: a lamp on the vehicle."""
+
+    power_w: FiniteFloat = 0.0
+    position_mm: tuple[FiniteFloat, FiniteFloat, FiniteFloat] = (250.0, -100.0, 0.0)
+    half_angle_deg: FiniteFloat = 35.0
+
+    def as_lamp(self) -> Lamp:
+        """Give the lamp."""
+        x, y, z = self.position_mm
+        return Lamp(self.power_w, (x / 1e3, y / 1e3, z / 1e3), math.radians(self.half_angle_deg))
+
+
 class LightTable(Table):
     """[light]."""
 
@@ -23,6 +39,7 @@ class LightTable(Table):
     divergence_mrad: FiniteFloat = 1.4
     waist_mm: FiniteFloat = 1.0
     ambient_w_m2: FiniteFloat = 0.0
+    lamp: LampTable = LampTable()
     streaks_percent: FiniteFloat = 0.0
     speckle: FiniteFloat = 0.0
     laser_on: bool = True
@@ -34,6 +51,7 @@ class LightTable(Table):
             self.divergence_mrad / 1e3,
             self.waist_mm / 1e3,
             self.ambient_w_m2,
+            self.lamp.as_lamp(),
             self.streaks_percent / 100,
             self.speckle,
             self.laser_on,

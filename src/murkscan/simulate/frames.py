@@ -122,7 +122,7 @@ class Simulator:
             for laser, density in zip(shining, self.snow_density, strict=False)
         )
         ambient = np.zeros_like(self.electrons)
-        if self.scene.light.ambient > 0:
+        if self.scene.light.shows_objects:
             ambient = draw_ambient(self.scene, number)
         return LightImage(lasers, ambient)
 

@@ -59,8 +59,10 @@ class Scene:
 
     def __post_init__(self) -> None:
         """Refuse a scene without light or without frames."""
-        if not self.rig.lasers and self.light.ambient == 0:
-            raise InputError("A scene needs light: add rig.laser, or light.ambient_w_m2.")
+        if not self.rig.lasers and not self.light.shows_objects:
+            raise InputError(
+                "A scene needs light: add rig.laser, light.ambient_w_m2 or light.lamp.power_w."
+            )
         if not self.bodies and self.sensor.peak_grey is not None:
             raise InputError(
                 "sensor.peak_grey is that of a stripe on an [object]: in an empty sea give "
