@@ -3,6 +3,7 @@
 import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -98,6 +99,9 @@ class Part:
 
     def scene(self) -> Scene:
         """Make the scene: pictures from the middle of the hull, with paint of the seed's own."""
+        return _scene_of(self)
+
+    def _made(self) -> Scene:
         row = ROWS.get(self.case)
         scene = self._on_ladder() if row is None else row.scene(self.seed)
         rows, middle = scene.row_step, len(scene) // (2 * scene.row_step)
@@ -118,10 +122,12 @@ class Part:
     def paint(self, truth: TrueStripe) -> np.ndarray:
         """Give the albedo of true centres on the hull; NaN on the wall, which is even."""
         albedo, on_hull = np.full(len(truth), np.nan), truth.points[:, 2] < _WALL
-        for body in () if self.case == TRACED else self.scene().bodies:
-            if not isinstance(body.texture, Plain):
-                points = body.world_from_object.inverse() @ truth.points[on_hull]
-                albedo[on_hull] = body.texture.albedo(points)
+        if self.case == TRACED or not self.scene().bodies:
+            return albedo
+        hull = self.scene().bodies[0]
+        if not isinstance(hull.texture, Plain):
+            points = hull.world_from_object.inverse() @ truth.points[on_hull]
+            albedo[on_hull] = hull.texture.albedo(points)
         return albedo
 
     def recorded(self, cache: Path) -> "Recorded":
@@ -135,6 +141,12 @@ class Part:
             else:
                 simulate_recording(self.scene(), folder)
         return Recorded(folder, is_interlaced=self.case not in (*HD, *HD_ROWS, TRACED))
+
+
+@lru_cache(maxsize=2)
+def _scene_of(part: Part) -> Scene:
+    """Make a scene once: some set their light by looking."""
+    return part._made()
 
 
 def _repaint(body: Body, seed: int) -> Body:

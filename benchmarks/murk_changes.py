@@ -67,13 +67,13 @@ def with_white_things(scene: Scene) -> Scene:
 
 
 def before_a_grating(scene: Scene) -> Scene:
-    """Put upright bars before a wall: some ten scan lines each, and as many between."""
-    return _among(scene, grating(0.012, 0.024), _wall_behind(1.1))
+    """Put three layers of upright bars before a wall: some ten scan lines each."""
+    return _among(scene, grating(0.012, 0.06, (0.65, 0.8, 0.95)), _wall_behind(1.1))
 
 
 def before_pieces(scene: Scene) -> Scene:
     """Put thin bars before nothing: pieces of 5 to 10 scan lines."""
-    return _among(scene, grating(0.008, 0.03))
+    return _among(scene, grating(0.008, 0.03, (0.8,)))
 
 
 def before_chains(scene: Scene) -> Scene:

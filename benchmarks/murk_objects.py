@@ -88,13 +88,16 @@ def _stand(point: np.ndarray, normal: np.ndarray, size: tuple[float, float, floa
     return Body(block, Pose(turn, origin), Plain(_ALBEDO))
 
 
-def grating(width: float, spacing: float) -> Mesh:
-    """Make upright bars at 0.8 m, each standing a little before or behind its neighbours [m]."""
-    middles = np.arange(-24, 25) * spacing
+def grating(width: float, spacing: float, depths: tuple[float, ...]) -> Mesh:
+    """Make layers of upright bars, one behind the other at these distances [m].
+
+    In each layer every other bar stands a little farther away.
+    """
     bars = []
-    for number, x in enumerate(middles):
-        bar = Stairs(width, 3.2, (width,)).mesh()
-        bars.append(_moved(bar, [x, -1.6, 0.8 + 0.01 * (number % 3)], back=width))
+    for layer, depth in enumerate(depths):
+        for number, x in enumerate(np.arange(-24, 25) * spacing):
+            place = [x + layer * spacing / len(depths), -1.6, depth + 0.01 * (number % 2)]
+            bars.append(_moved(Stairs(width, 3.2, (width,)).mesh(), place, back=width))
     return join_meshes(bars)
 
 

@@ -41,7 +41,8 @@ def places_in_light(laser: LaserView, mask: Picture) -> Points:
     """Give places of the sheet, in the camera frame [m], around which particles may be seen."""
     steps = (_ALONG, _ACROSS) if laser.scan_lines.laser.axis == "y" else (_ACROSS, _ALONG)
     tried = np.arange(mask.size).reshape(mask.shape)[:: steps[0], :: steps[1]]
-    return laser.view[tried[mask[:: steps[0], :: steps[1]] > 0.0]].points
+    points = laser.view[tried[mask[:: steps[0], :: steps[1]] > 0.0]].points
+    return points[np.isfinite(points[:, 0])]  # at a pixel's edge light may be, and no sheet
 
 
 def draw_snow(
