@@ -16,7 +16,7 @@ from murkscan.simulate.textures import Checkered, Plain
 from murkscan.types.pose import Pose
 from murkscan.types.rig import Rig
 
-from ..scenes import air_rig, body, standing, wall
+from ..scenes import air_rig, body, smaller, standing, wall
 
 
 def test_a_mat_wall_gives_back_the_laser_s_power():
@@ -175,3 +175,22 @@ def test_water_before_a_lamp_shines_and_takes_its_light():
     assert veil > 0
     way = 0.6 + math.hypot(0.25, 0.1, 0.6)
     assert murky - veil == pytest.approx(clear * math.exp(-2.0 * way), rel=2e-3)
+
+
+def test_a_rolled_sheet_that_leaves_the_picture_is_drawn_with_its_particles():
+    """Some pixels see no sheet at all: particles are not looked for there."""
+    from scipy.spatial.transform import Rotation
+
+    from murkscan.simulate import Particles
+    from murkscan.types.laser import Fan, Laser
+
+    turn = Rotation.from_euler("z", 63, degrees=True).as_matrix()
+    fan = Fan.spread(
+        turn @ [0, -0.25, 0], turn @ [0, 0.25, 0.5], turn @ [1.0, 0, 0], math.radians(30)
+    )
+    rig = Rig(air_rig().camera, (Laser(fan, "y"),))
+    scene = smaller(standing(wall(0.6), rig=rig, medium=Medium(1.5), particles=Particles(30.0)))
+    frame = Simulator.of(scene).draw_frame(0)
+    steps = np.diff(frame.stripe.pixels, axis=0)
+    assert abs(np.median(steps[:, 1])) == pytest.approx(math.tan(math.radians(63)), rel=0.15)
+    assert (frame.light.lasers[0].glow > 0).any()
