@@ -28,6 +28,7 @@ def write_video() -> Callable[..., Path]:
         times: Sequence[int] | None = None,
         options: dict[str, str] | None = None,
         title: str | None = None,
+        ticks: int = 1000,
     ) -> Path:
         with av.open(str(path), "w") as container:
             if title:
@@ -35,12 +36,12 @@ def write_video() -> Callable[..., Path]:
             stream = container.add_stream(codec, rate=25)
             stream.height, stream.width = height or pictures[0].shape[0], pictures[0].shape[1]
             stream.pix_fmt = kept
-            stream.codec_context.time_base = Fraction(1, 1000)
+            stream.codec_context.time_base = Fraction(1, ticks)
             stream.codec_context.options = options or {}
             for number, picture in enumerate(pictures):
                 frame = av.VideoFrame.from_ndarray(picture, given).reformat(format=kept)
-                frame.pts = times[number] if times else 40 * number
-                frame.time_base = Fraction(1, 1000)
+                frame.pts = times[number] if times else ticks // 25 * number
+                frame.time_base = Fraction(1, ticks)
                 container.mux(stream.encode(frame))
             container.mux(stream.encode())
         return path

@@ -152,6 +152,11 @@ def test_real_progressive_recordings_are_known_as_such(data, name):
     assert recording.order == "progressive"
 
 
+@pytest.mark.parametrize("name", ["plane_gop12.mp4", "stairs_bf2_crf10.mp4"])
+def test_a_stripe_that_creeps_by_a_part_of_a_row_stays_progressive(fault, name):
+    assert open_recording(fault(f"video/{name}")).order == "progressive"
+
+
 SLOW = """
 format = 1
 seed = 9

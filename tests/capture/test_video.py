@@ -1,3 +1,5 @@
+import struct
+
 import av
 import numpy as np
 import pytest
@@ -220,3 +222,54 @@ def test_the_real_video_is_read_whole(data):
     )
     assert (recording.size, len(frames), skips) == ((640, 480), 23, [])
     assert [frame.time for frame in frames] == pytest.approx([n / 25 for n in range(23)])
+
+
+def without_data(path, numbers):
+    """Rewrite an AVI such that some pictures have no data, as recorders write dropped ones."""
+    data = path.read_bytes()
+    movi = data.index(b"movi")
+    (size,) = struct.unpack_from("<I", data, movi - 4)
+    at, picture, body, index = movi + 4, 0, b"", b""
+    while at < movi + size:
+        name, length = data[at : at + 4], struct.unpack_from("<I", data, at + 4)[0]
+        content = data[at + 8 : at + 8 + length]
+        if name == b"00dc":
+            content, picture = (b"" if picture in numbers else content), picture + 1
+        index += name + struct.pack("<III", 0x10, 4 + len(body), len(content))
+        body += name + struct.pack("<I", len(content)) + content + b"\0" * (len(content) % 2)
+        at += 8 + length + length % 2
+    chunks = struct.pack("<I", len(body) + 4) + b"movi" + body
+    chunks += b"idx1" + struct.pack("<I", len(index)) + index
+    path.write_bytes(data[: movi - 4] + chunks)
+
+
+@pytest.mark.parametrize("dropped", [[3, 4, 7], [9], [5, 6, 7, 8]], ids=str)
+def test_pictures_without_data_keep_their_numbers_and_times(tmp_path, write_video, dropped):
+    pictures = [np.full((64, 96), 20 * number, np.uint8) for number in range(10)]
+    path = write_video(tmp_path / "a.avi", pictures, codec="mjpeg", kept="yuvj420p", ticks=25)
+    without_data(path, dropped)
+    skips = []
+    frames = list(open_recording(path).frames(on_skip=skips.append))
+    there = np.setdiff1d(np.arange(10), dropped)
+    np.testing.assert_array_equal([frame.index for frame in frames], there)
+    np.testing.assert_allclose([frame.time for frame in frames], there / 25)
+    np.testing.assert_allclose([frame.image.mean() for frame in frames], 20 * there, atol=2)
+    assert sorted(k for one in skips for k in range(one.index, one.index + one.count)) == dropped
+
+
+@pytest.mark.parametrize("name", ["bframes.avi", "x264_default.avi"])
+def test_pictures_that_avi_reorders_come_in_order_at_their_right_times(fault, name):
+    """Each picture bears its number in binary, a bar for each one: so its mean grows with them."""
+    skips = []
+    recording = open_recording(fault(f"video/{name}"))
+    frames = list(recording.frames(on_skip=skips.append))
+    assert [frame.index for frame in frames] == list(range(100))
+    np.testing.assert_allclose([frame.time for frame in frames], np.arange(100) / 25)
+    assert skips == []
+    means = np.array([frame.image.mean() for frame in frames])
+    bars = (means - means[0]) / (means[1] - means[0])
+    # The last few fade: an encoder has no pictures behind them to spend its bits for.
+    np.testing.assert_allclose(bars[:94], [k.bit_count() for k in range(94)], atol=0.3)
+    assert recording.span == pytest.approx((0.0, 3.96))
+    sample = recording.sample(5)
+    np.testing.assert_allclose([frame.time for frame in sample], [f.index / 25 for f in sample])

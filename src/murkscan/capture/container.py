@@ -1,8 +1,11 @@
 """A video file as FFmpeg opens it: the file itself, and nothing that it names."""
 
 import re
+from collections.abc import Iterator
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
+from statistics import median
 from typing import Any
 
 import av
@@ -80,6 +83,38 @@ def open_video(path: Path) -> Any:
         raise FormatError(f"{path} holds no video; give a video file or a folder of pictures.")
     container.streams.video[0].thread_type = "AUTO"
     return container
+
+
+def is_avi(container: Any) -> bool:
+    """Tell whether a file places its pictures by their number, as AVI does, not by their time."""
+    return container.format.name == "avi"
+
+
+def picture_ticks(container: Any) -> int:
+    """Give how many places of an AVI a picture takes; 0 for other files, and without an index.
+
+    A place without data is a picture that the recorder dropped; only where the places are finer
+    than the pictures, most of them are empty.
+    """
+    if not is_avi(container):
+        return 0
+    places = [entry.timestamp for entry in container.streams.video[0].index_entries]
+    return max(round(median(b - a for a, b in pairwise(places))), 0) if len(places) > 1 else 0
+
+
+def demux_video(container: Any) -> Iterator[Any]:
+    """Give the packets of the pictures from the present place on.
+
+    In AVI a packet's time is that of its place: FFmpeg's guess of when it is shown is wrong where
+    pictures are reordered.
+
+    Raises:
+        av.error.FFmpegError: The file is damaged there.
+    """
+    for packet in container.demux(container.streams.video[0]):
+        if is_avi(container) and packet.dts is not None:
+            packet.pts = packet.dts
+        yield packet
 
 
 def _refuse_doors(path: Path) -> None:

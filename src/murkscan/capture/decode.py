@@ -13,6 +13,10 @@ import numpy as np
 
 from ..types.arrays import Image
 from .colour import grey_from_colour, is_green
+from .container import demux_video, is_avi, picture_ticks
+
+_MOST_REORDERED = 16
+"""Pictures that an encoder may put before one that is shown earlier (H.264, max_num_reorder)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,8 +37,9 @@ class Loss:
     """Number of the first of them in the recording."""
     count: int
     """How many they are."""
-    why: Literal["broken", "cut", "untimed"] = "broken"
-    """They cannot be decoded, are promised behind the file's end, or have no time of their own."""
+    why: Literal["broken", "empty", "cut", "untimed"] = "broken"
+    """They cannot be decoded, have no data in the file, are promised behind the file's end, or have
+    no time of their own."""
 
     @property
     def end(self) -> int:
@@ -49,7 +54,8 @@ def decode_pictures(container: Any) -> Iterator[Picture | Loss]:
     pictures keep their numbers: those of the packets that were fed and never came out, or, where
     damage swallowed packets too, as many as fit into the gap in time.
     """
-    fed, rhythm = _Fed(), _Rhythm()
+    tick = picture_ticks(container)
+    fed, rhythm = _Fed(tick), _Rhythm(tick)
     number, lost, damaged = 0, 0, True
     for decoded in _decode_packets(container, fed):
         if decoded is None:
@@ -63,10 +69,10 @@ def decode_pictures(container: Any) -> Iterator[Picture | Loss]:
             continue
         lost = max(lost, rhythm.beat(decoded.pts, damaged))
         if lost:
-            yield Loss(number, lost)
+            yield Loss(number, lost, "broken" if damaged or not tick else "empty")
         yield Picture(number + lost, decoded)
         number, lost, damaged = number + lost + 1, 0, False
-    promised = container.streams.video[0].frames - fed.count
+    promised = container.streams.video[0].frames // max(tick, 1) - fed.num_pictures
     lost += len(fed.times) if damaged or promised > 0 else 0
     if lost:
         yield Loss(number, lost)
@@ -77,15 +83,27 @@ def decode_pictures(container: Any) -> Iterator[Picture | Loss]:
 class _Fed:
     """The packets that the decoder was fed."""
 
-    def __init__(self) -> None:
-        self.count = 0
+    def __init__(self, tick: int) -> None:
+        self._tick = tick
+        self._count = 0
+        self._first: int | None = None
+        self._last = 0
         self.times: list[int] = []
         """A heap: the times of those whose pictures have not come out."""
 
+    @property
+    def num_pictures(self) -> int:
+        """How many pictures they stand for; in AVI those without a packet count as well."""
+        if self._tick and self._first is not None:
+            return (self._last - self._first) // self._tick + 1
+        return self._count
+
     def add(self, packet: Any) -> None:
         """Note a packet; the empty one at the end is none."""
-        self.count += packet.dts is not None or packet.size > 0
+        self._count += packet.dts is not None or packet.size > 0
         if packet.pts is not None:
+            self._first = packet.pts if self._first is None else self._first
+            self._last = max(self._last, packet.pts)
             heapq.heappush(self.times, packet.pts)
 
     def forget_until(self, pts: int | None) -> int:
@@ -102,7 +120,8 @@ class _Fed:
 class _Rhythm:
     """How far pictures are apart, by those that were decoded lately."""
 
-    def __init__(self) -> None:
+    def __init__(self, tick: int) -> None:
+        self._tick = tick
         self._last: int | None = None
         self._steps: deque[int] = deque(maxlen=25)
 
@@ -112,6 +131,8 @@ class _Rhythm:
         self._last = pts
         if step is None or step <= 0:
             return 0
+        if self._tick:
+            return max(round(step / self._tick) - 1, 0)
         if not damaged:
             self._steps.append(step)
         if not damaged or not self._steps:
@@ -120,8 +141,42 @@ class _Rhythm:
 
 
 def _decode_packets(container: Any, fed: _Fed) -> Iterator[Any]:
-    """Feed packets and give what comes out, None for damage."""
-    packets = container.demux(container.streams.video[0])
+    """Feed packets and give what comes out in order of time, None for damage."""
+    decoded = _feed(container, fed)
+    return _sort_times(decoded) if is_avi(container) else decoded
+
+
+def _sort_times(decoded: Iterator[Any]) -> Iterator[Any]:
+    """Give pictures of AVI the times of their places.
+
+    AVI knows when packets are decoded, not when pictures are shown. A decoder gives pictures in the
+    order in which they are shown, each with the time of its packet: the first one is shown at the
+    earliest of these times, and so on.
+    """
+    waiting, times = deque[Any](), list[int]()
+    for item in decoded:
+        waiting.append(item)
+        if item is not None and item.pts is not None:
+            heapq.heappush(times, item.pts)
+        if len(times) > _MOST_REORDERED:
+            yield from _release(waiting, times)
+    while waiting:
+        yield from _release(waiting, times)
+
+
+def _release(waiting: deque[Any], times: list[int]) -> Iterator[Any]:
+    """Give what waits, up to the first picture with a time."""
+    while waiting:
+        item = waiting.popleft()
+        if item is not None and item.pts is not None:
+            item.pts = heapq.heappop(times)
+            yield item
+            return
+        yield item
+
+
+def _feed(container: Any, fed: _Fed) -> Iterator[Any]:
+    packets = demux_video(container)
     while True:
         try:
             packet = next(packets, None)

@@ -149,15 +149,20 @@ def _decide(
 ) -> FieldOrder:
     """Take what the user says; else what the pictures tell; else, where nothing moves, the flag.
 
+    That they are fields must be told by the second, longer look, too.
+
     Fields of an order that nothing tells are taken as the flag says, or top first, as PAL has them.
     """
     if fields != "auto":
         return fields
     verdict: FieldVerdict = "undecided"
     for count in _RUNS:
+        # A stripe that creeps makes a few pictures lean as fields do: those get a second look.
         verdict = find_field_order(runs(count))
-        if verdict != "undecided" and verdict != "interlaced":
+        if verdict == "progressive":
             return verdict
+    if verdict == "top-first" or verdict == "bottom-first":
+        return verdict
     return "top-first" if verdict == "interlaced" and flag == "progressive" else flag
 
 
@@ -173,8 +178,9 @@ def _open_video(path: Path, wavelength: float, fps: float | None, fields: Fields
         times = [facts.start + facts.duration * i / count for i in range(count)]
         found = first_runs if count == _RUNS[0] else read_runs(path, times, count * _RUN)
         return (
-            [grey_from_video(d, wavelength) for d in run if (d.width, d.height) == facts.size]
+            [grey_from_video(d, wavelength) for d in piece if (d.width, d.height) == facts.size]
             for run in found
+            for piece in _cut_run(run)
         )
 
     flag: FieldOrder = "top-first" if facts.is_flagged else "progressive"
@@ -188,6 +194,11 @@ def _open_video(path: Path, wavelength: float, fps: float | None, fields: Fields
         clock=clock,
         wavelength=wavelength,
     )
+
+
+def _cut_run(run: Sequence[Any]) -> Iterable[Sequence[Any]]:
+    """Cut a long run, where a video has few keyframes, into short ones that have to agree."""
+    return (run[start : start + _RUN] for start in range(0, len(run), _RUN))
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import Any
 
 import av
 
-from .container import open_video
+from .container import demux_video, open_video
 from .decode import Picture, decode_pictures, picture_time
 
 _NOWHERE = float("-inf")
@@ -61,7 +61,7 @@ def find_keyframes(path: Path, times: Sequence[float]) -> list[float]:
             keyframe = _NOWHERE
             with suppress(av.error.FFmpegError):
                 _seek(container, time)
-                packet = next(container.demux(container.streams.video[0]))
+                packet = next(demux_video(container))
                 if packet.pts is not None and packet.pts * packet.time_base <= time + _SAME:
                     keyframe = float(packet.pts * packet.time_base)
             found.append(keyframe)

@@ -19,6 +19,7 @@ from .timed import TimedPicture, time_pictures
 
 _WHY = {
     "broken": "cannot be decoded",
+    "empty": "came without data: the recorder dropped frames there",
     "cut": "can no longer be read: the file ends too early",
     "untimed": "cannot be placed in time: by the file's clock not after the picture before; if "
     "that clock is wrong, give the pictures a second (--fps)",
