@@ -17,6 +17,7 @@ import numpy as np
 from harness import Figure, tell
 
 from murkscan import PointCloud, Project
+from murkscan.project import CLOUD, CloudResult
 from murkscan.survey.export import export_cloud
 
 SIZES = (20, 60, 200)
@@ -61,13 +62,13 @@ def parts(millions: int) -> Iterator[PointCloud]:
 def make_project(root: Path, millions: int) -> Project:
     """Write a finished cloud stage."""
     project = Project(root)
-    stage = project.stage("cloud", settings={}, inputs={})
+    stage = project.stage(CLOUD, settings={}, inputs={})
     since = time.monotonic()
     stage.begin()
     with project.writing_cloud() as write:
         for cloud in parts(millions):
             write(cloud)
-    stage.finish({"points": millions * 1_000_000, "outliers": 0}, since=since)
+    stage.finish(CloudResult(millions * 1_000_000, outliers=0), since=since)
     return project
 
 

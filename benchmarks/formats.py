@@ -10,7 +10,7 @@ from harness import Figure, skip, tell
 
 from murkscan import GridMesh, Mesh, PointCloud
 from murkscan.io.mesh_files import save_mesh
-from murkscan.io.mlp import save_frames
+from murkscan.io.mlp import frame_name, save_project, split_frames
 from murkscan.io.ply import save_cloud
 
 try:
@@ -87,7 +87,12 @@ def compare(
 def write_all(folder: Path, cloud: PointCloud, mesh: Mesh) -> list[tuple[str, Path, np.ndarray]]:
     save_cloud(folder / "cloud.ply", cloud)
     written = [("cloud PLY", folder / "cloud.ply", cloud.points)]
-    written.append(("MLP", save_frames(folder, cloud), cloud.points))
+    frames = []
+    for frame, points in split_frames(cloud):
+        frames.append(folder / frame_name(frame))
+        save_cloud(frames[-1], points)
+    save_project(folder / "frames.mlp", frames)
+    written.append(("MLP", folder / "frames.mlp", cloud.points))
     for suffix in ("ply", "stl", "glb"):
         path = folder / f"mesh.{suffix}"
         save_mesh(path, mesh)

@@ -15,6 +15,7 @@ from murkscan import (
     Laser,
     Murk,
     PointCloud,
+    Project,
     Rig,
     Steger,
     ThresholdSkeleton,
@@ -46,7 +47,8 @@ EXTRACTORS = (Murk(), GrayGravity(), ThresholdSkeleton(), GaussianFit(), Steger(
 def scan_cloud(extractor: AbstractExtractor, out: Path) -> PointCloud:
     """Run the stages up to the cloud."""
     recording = open_recording(DATA / "stage_stairs" / "scan", wavelength=RIG.wavelength)
-    project = begin_scan(out, recording, RIG, laser=0, settings={"extractor": extractor})
+    project = Project(out)
+    begin_scan(project, recording, RIG, laser=0, settings={"extractor": extractor})
     extract_recording(project, recording, RIG, extractor)
     triangulate_stripes(project, RIG, RaySheet())
     follow_motion(project, ConstantStep(1e-3, "x"))

@@ -9,7 +9,8 @@ MurkscanError
 │   └── NotConverged
 ├── MissingResult      (also FileNotFoundError)  an earlier stage has not been run
 ├── MissingDependency  (also ImportError)        an extra is not installed
-└── DeviceError        (also OSError)            a camera, a disk or a worker failed
+├── DeviceError        (also OSError)            a camera, a disk or a worker failed
+└── Cancelled                                    somebody stopped it
 
 Every message is a sentence that says what is wrong, with the numbers and the file, and what to do.
 """
@@ -53,3 +54,7 @@ class MissingDependency(MurkscanError, ImportError):
 
 class DeviceError(MurkscanError, OSError):
     """A camera, a disk or a worker failed."""
+
+
+class Cancelled(MurkscanError):
+    """A job was stopped from outside; what is finished is kept."""

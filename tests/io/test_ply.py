@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from murkscan.errors import DeviceError, FormatError
-from murkscan.io.mlp import save_frames
 from murkscan.io.ply import load_cloud, save_cloud
 from murkscan.types.cloud import PointCloud
 
@@ -124,22 +123,3 @@ def test_a_failed_write_leaves_what_stood_there(tmp_path):
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
     assert (tmp_path / "cloud.ply").read_bytes() == before
     assert [path.name for path in tmp_path.iterdir()] == ["cloud.ply"]
-
-
-def test_each_frame_gets_a_file_and_the_project_names_them_all(tmp_path):
-    cloud = some_cloud()
-    project = save_frames(tmp_path, cloud)
-    frames = sorted((tmp_path / "frames").iterdir())
-    assert [path.name for path in frames] == [f"frame_{k:06d}.ply" for k in range(5)]
-    text = project.read_text()
-    assert all(f'filename="frames/{path.name}"' in text for path in frames)
-    np.testing.assert_array_equal(load_cloud(frames[3]).points, cloud[cloud.frame == 3].points)
-
-
-def test_frames_of_an_earlier_run_do_not_stay(tmp_path):
-    cloud = some_cloud()
-    save_frames(tmp_path, cloud)
-    (tmp_path / "frames" / "frame_notes.ply").write_text("mine")
-    save_frames(tmp_path, cloud[cloud.frame != 2])
-    names = sorted(path.name for path in (tmp_path / "frames").iterdir())
-    assert names == [f"frame_{k:06d}.ply" for k in (0, 1, 3, 4)] + ["frame_notes.ply"]

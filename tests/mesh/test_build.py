@@ -1,7 +1,5 @@
 """The mesh stage: what it writes, what it says, and what it does not begin."""
 
-import time
-
 import numpy as np
 import pytest
 
@@ -9,8 +7,10 @@ from murkscan import Project
 from murkscan.errors import InputError, MissingResult
 from murkscan.io.mesh_files import load_mesh
 from murkscan.mesh import BySignal, GridMesh
+from murkscan.project import CLOUD, CloudResult, PassResult
 from murkscan.survey.mesh import Finish, build_mesh, export_mesh
 
+from ..projects import MERGED, finish, save_cloud
 from ..scans import holed, scan_cloud
 
 
@@ -18,22 +18,17 @@ from ..scans import holed, scan_cloud
 def project(tmp_path):
     """A cloud alone, as merging leaves it, of a wall with a hole of 40 mm."""
     project = Project(tmp_path / "out")
-    none = dict[str, str]()
-    project.save_scan({"format": 1, "merged": [], "versions": none, "recording": none, "rig": none})
-    stage = project.stage("cloud", settings={}, inputs={})
-    stage.begin()
+    project.save_scan(MERGED)
     cloud = scan_cloud(holed, spacing=2e-3)
-    with project.writing_cloud() as write:
-        write(cloud)
-    passes = [{"path": "wall.ply", "frames": [0, int(cloud.frame.max())], "alignment": None}]
-    told = {"points": len(cloud), "outliers": 0, "passes": passes}
-    stage.finish(told, since=time.monotonic())
+    one = PassResult("wall.ply", (0, int(cloud.frame.max())), 0, "", None, ())
+    result = CloudResult(len(cloud), outliers=0, passes=(one,))
+    finish(project, CLOUD, result, make=lambda: save_cloud(project, cloud))
     return project
 
 
 def test_a_surface_is_coloured_and_open_unless_told(project):
     result = build_mesh(project, GridMesh())
-    assert result.keys() == {"vertices", "faces"}
+    assert (result.holes_closed, result.holes_left, result.faces_filled) == (None, None, None)
     made = {file.name for file in (project.root / "mesh").iterdir()}
     assert made == {"mesh.ply", "mesh.stl", "mesh.glb", "stage.json"}
     assert project.load_mesh().colours is not None
@@ -44,9 +39,9 @@ def test_holes_are_closed_then_triangles_thinned_out(project):
     finish = Finish(largest_hole=0.05, faces=4000, paint=BySignal())
     result = build_mesh(project, GridMesh(), finish=finish)
     mesh = project.load_mesh()
-    assert (result["holes_closed"], result["holes_left"]) == (1, 0)
-    assert result["faces"] == len(mesh.faces) <= 4000
-    assert result["faces_filled"] == mesh.filled.sum() > 0
+    assert (result.holes_closed, result.holes_left) == (1, 0)
+    assert result.faces == len(mesh.faces) <= 4000
+    assert result.faces_filled == mesh.filled.sum() > 0
 
 
 def test_another_finish_makes_the_surface_anew_and_the_same_does_not(project):

@@ -13,8 +13,18 @@ from scipy.spatial.transform import Rotation
 from murkscan.cli.main import run
 from murkscan.errors import Degenerate, FormatError, InputError, MissingResult, NotEnoughData
 from murkscan.io.cloud_files import load_cloud_file, writing_cloud_file
-from murkscan.io.ply import save_cloud
-from murkscan.project import Project
+from murkscan.project import (
+    CLOUD,
+    EXTRACT,
+    MOTION,
+    TRIANGULATE,
+    CloudResult,
+    ExtractResult,
+    MotionResult,
+    PartNote,
+    Project,
+    TriangulateResult,
+)
 from murkscan.survey.cloud import build_cloud
 from murkscan.survey.export import export_cloud
 from murkscan.survey.merge import merge_passes
@@ -26,6 +36,7 @@ from murkscan.types.profile import Profile
 from murkscan.types.stripe import empty_stripe
 from murkscan.types.trajectory import Trajectory
 
+from ..projects import SCAN, finish, save_cloud
 from ..scans import plane, scan, scan_cloud
 from ..scenes import air_rig
 
@@ -37,11 +48,9 @@ def waves(x, y):
 def as_project(root, cloud):
     """A project of which only the cloud is there."""
     project = Project(root)
-    project.save_scan({"recording": {}, "rig": {}, "versions": {}})
-    stage = project.stage("cloud", settings={}, inputs={})
-    stage.begin()
-    save_cloud(root / "cloud/cloud.ply", cloud)
-    stage.finish({"points": len(cloud), "outliers": 0}, since=0.0)
+    project.save_scan(SCAN)
+    result = CloudResult(len(cloud), outliers=0)
+    finish(project, CLOUD, result, make=lambda: save_cloud(project, cloud))
     return project
 
 
@@ -58,20 +67,17 @@ def project(tmp_path, cloud):
 def scanned(root, profile, trajectory, *, parts):
     """A project with finished extract, triangulate and motion, cut into parts."""
     project = Project(root)
-    project.save_scan({"recording": {}, "rig": {}, "versions": {}})
-    extract = project.stage("extract", settings={"laser": 0}, inputs={})
-    extract.begin()
-    extract.finish({"frames": 120, "points": len(profile), "skips": []}, since=0.0)
-    triangulate = project.stage("triangulate", settings={}, inputs={"extract": extract.digest})
-    triangulate.begin()
-    for number, frames in enumerate(np.array_split(np.unique(profile.frame), parts)):
-        project.save_profile_part(number, profile[np.isin(profile.frame, frames)])
-    triangulate.finish({"points": len(profile), "dropped": 0}, since=0.0)
-    settings = {"motion": {"type": "ConstantSpeed"}}
-    motion = project.stage("motion", settings=settings, inputs={"extract": extract.digest})
-    motion.begin()
-    project.save_trajectory(trajectory)
-    motion.finish({}, since=0.0)
+    project.save_scan(SCAN)
+    inputs = {"extract": finish(project, EXTRACT, ExtractResult(0, 120, 0, 0, len(profile))).digest}
+
+    def save_parts():
+        for number, frames in enumerate(np.array_split(np.unique(profile.frame), parts)):
+            project.save_profile_part(number, profile[np.isin(profile.frame, frames)])
+
+    triangulated = TriangulateResult(len(profile), dropped=0)
+    finish(project, TRIANGULATE, triangulated, inputs=inputs, make=save_parts)
+    moved = MotionResult(len(trajectory.times))
+    finish(project, MOTION, moved, inputs=inputs, make=lambda: project.save_trajectory(trajectory))
     return project
 
 
@@ -101,16 +107,15 @@ def test_outliers_are_counted_for_each_cause(tmp_path):
     profile.points[spikes] *= 1.1
     profile = replace(profile, posterior=np.where(unsure, 0.2, 0.9).astype(np.float32))
     result = build_cloud(scanned(tmp_path, profile, trajectory, parts=2), air_rig(axis="x"))
-    assert result["outliers_by_posterior"] == unsure.sum()
-    assert result["outliers_by_density"] == pytest.approx((spikes & ~unsure).sum(), rel=0.1)
-    causes = [value for name, value in result.items() if name.startswith("outliers_by_")]
-    assert sum(causes) == result["outliers"] == len(profile) - result["points"]
+    assert result.outliers_by["posterior"] == unsure.sum()
+    assert result.outliers_by["density"] == pytest.approx((spikes & ~unsure).sum(), rel=0.1)
+    assert sum(result.outliers_by.values()) == result.outliers == len(profile) - result.points
 
 
 def test_a_scan_without_a_point_is_an_empty_cloud(tmp_path):
     profile, trajectory = scan(plane)
     result = build_cloud(scanned(tmp_path, profile[:0], trajectory, parts=1), air_rig(axis="x"))
-    assert (result["points"], len(Project(tmp_path).load_cloud())) == (0, 0)
+    assert (result.points, len(Project(tmp_path).load_cloud())) == (0, 0)
 
 
 def test_blocks_hold_every_frame_once():
@@ -180,39 +185,45 @@ def test_two_passes_become_one_in_the_frame_of_the_first(project, tmp_path, clou
     out = tmp_path / "merged"
     result = merge_passes([project.root, tmp_path / "second"], out)
     merged = Project(out).load_cloud()
-    assert len(merged) == result["points"] == len(cloud) + len(second)
+    assert len(merged) == result.points == len(cloud) + len(second)
     moved = merged[len(cloud) :]
     # 0.1 mm of noise along the ray; the correction is known to hundredths of a millimetre.
     off = moved.points[:, 2] - waves(moved.points[:, 0], moved.points[:, 1])
     assert np.sqrt(np.mean(off**2)) < 1.2e-4
-    found = result["passes"][1]["alignment"]
-    np.testing.assert_allclose(np.array(found["rotation"]) @ pose.rotation, np.eye(3), atol=1e-3)
-    assert found["open"] == []
+    found = result.passes[1].alignment
+    np.testing.assert_allclose(np.array(found.rotation) @ pose.rotation, np.eye(3), atol=1e-3)
+    assert found.open == ()
     # What stage.json says is what was returned, and the frames of the passes do not mix.
     note = json.loads((out / "cloud/stage.json").read_text())
-    assert note["result"]["passes"][1]["alignment"] == found
-    first, other = (one["frames"] for one in result["passes"])
+    told = note["result"]["passes"][1]["alignment"]
+    assert told["rotation"] == [list(row) for row in found.rotation]
+    first, other = (one.frames for one in result.passes)
     assert first[1] + 2 < other[0]
-    assert other == [int(moved.frame.min()), int(moved.frame.max())]
+    assert other == (int(moved.frame.min()), int(moved.frame.max()))
 
 
 def followed(project, attitude):
     """Add the poses of a camera that looks along an attitude, a frame a millimetre."""
     cloud = project.load_cloud()
     frames = np.unique(cloud.frame)
-    extract = project.stage("extract", settings={"laser": 0}, inputs={})
-    extract.begin()
-    columns = {"frames": frames.tolist(), "times": (frames / 25).tolist()}
-    columns |= {"points": [], "skips": []}
-    project.save_stripe_part(0, empty_stripe(), columns)
-    extract.finish({"frames": len(frames), "points": len(cloud), "skips": []}, since=0.0)
-    motion = project.stage("motion", settings={}, inputs={"extract": extract.digest})
-    motion.begin()
+    note = PartNote(tuple(frames.tolist()), tuple((frames / 25).tolist()), (), ())
+    extract = finish(
+        project,
+        EXTRACT,
+        ExtractResult(0, len(frames), 0, 0, len(cloud)),
+        make=lambda: project.save_stripe_part(0, empty_stripe(), note),
+    )
     count = len(frames)
     positions = np.stack([frames * 1e-3, np.zeros(count), np.zeros(count)], axis=1)
     quaternions = np.tile(attitude.as_quat(scalar_first=True), (count, 1))
-    project.save_trajectory(Trajectory(frames / 25, positions, quaternions))
-    motion.finish({}, since=0.0)
+    way = Trajectory(frames / 25, positions, quaternions)
+    finish(
+        project,
+        MOTION,
+        MotionResult(count),
+        inputs={"extract": extract.digest},
+        make=lambda: project.save_trajectory(way),
+    )
     return project
 
 
@@ -239,8 +250,8 @@ def test_a_plain_wall_says_what_it_leaves_open(tmp_path):
     for name, spacing in (("a", 1e-3), ("b", 1.1e-3)):
         as_project(tmp_path / name, scan_cloud(plane, noise=1e-4, spacing=spacing))
     result = merge_passes([tmp_path / "a", tmp_path / "b"], tmp_path / "out")
-    assert "open, so as logged: sliding along" in result["passes"][1]["words"]
-    assert len(result["passes"][1]["alignment"]["open"]) == 3
+    assert "open, so as logged: sliding along" in result.passes[1].words
+    assert len(result.passes[1].alignment.open) == 3
 
 
 def test_a_pass_that_meets_only_the_third_waits_for_it(tmp_path, cloud):
@@ -250,8 +261,8 @@ def test_a_pass_that_meets_only_the_third_waits_for_it(tmp_path, cloud):
         as_project(tmp_path / name, cloud[which])
     paths = [tmp_path / name for name in "abc"]
     result = merge_passes(paths, tmp_path / "out", reach=0.005)
-    assert [one["path"] for one in result["passes"]] == [str(path) for path in paths]
-    assert result["passes"][1]["alignment"]["overlap"] > 0.5
+    assert [one.path for one in result.passes] == [str(path) for path in paths]
+    assert result.passes[1].alignment.overlap > 0.5
 
 
 def test_passes_without_overlap_are_refused_unless_the_log_is_trusted(project, tmp_path, cloud):
@@ -261,7 +272,7 @@ def test_passes_without_overlap_are_refused_unless_the_log_is_trusted(project, t
     with pytest.raises(Degenerate, match="far: The two clouds do not overlap"):
         merge_passes(paths, tmp_path / "out")
     assert not (tmp_path / "out").exists()
-    assert merge_passes(paths, tmp_path / "out", align=False)["points"] == 2 * len(cloud)
+    assert merge_passes(paths, tmp_path / "out", align=False).points == 2 * len(cloud)
 
 
 def test_what_cannot_be_merged_is_one_sentence_and_writes_nothing(project, tmp_path, cloud):
@@ -303,10 +314,10 @@ def test_points_of_others_that_are_not_finite_are_left_out_and_counted(project, 
     with writing_cloud_file(tmp_path / "other.ply") as write:
         write(broken)
     result = merge_passes([project.root, tmp_path / "other.ply"], tmp_path / "out")
-    assert result["points"] == len(cloud) + len(cloud) // 2
+    assert result.points == len(cloud) + len(cloud) // 2
     broken = len(cloud) - len(cloud) // 2
-    assert [one["left_out"] for one in result["passes"]] == [0, broken]
-    assert f"{broken:,} points without a place" in result["passes"][1]["words"]
+    assert [one.left_out for one in result.passes] == [0, broken]
+    assert f"{broken:,} points without a place" in result.passes[1].words
 
 
 def test_the_commands_merge_export_and_go_on(project, tmp_path, capsys, cloud):
@@ -339,14 +350,14 @@ def test_an_export_does_not_hold_the_cloud_in_memory(tmp_path):
     code = (
         "import resource, sys; from pathlib import Path\n"
         "sys.path.insert(0, sys.argv[2])\n"
-        "from tests.survey.test_cloud import as_project, export_cloud, scan_cloud, plane\n"
+        "from tests.survey.test_cloud import *\n"
         "root, cloud = Path(sys.argv[1]), scan_cloud(plane)\n"
         "project = as_project(root / 'scan', cloud)\n"
-        "stage = project.finished('cloud')\n"
         "for copies in (22, 66):\n"
-        "    with project.writing_cloud() as write:\n"
-        "        for _ in range(copies): write(cloud)\n"
-        "    stage.finish({'points': copies * len(cloud), 'outliers': 0}, since=0.0)\n"
+        "    def make():\n"
+        "        with project.writing_cloud() as write:\n"
+        "            for _ in range(copies): write(cloud)\n"
+        "    finish(project, CLOUD, CloudResult(copies * len(cloud), 0), make=make)\n"
         "    export_cloud(project, root / 'dive.laz')\n"
         "    export_cloud(project, root / 'thin.laz', voxel=0.005)\n"
         "    print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)\n"

@@ -25,7 +25,7 @@ def merged(tmp_path_factory):
         paths = [folder / f"{number}.ply" for number in range(3)]
         for path, strip in zip(paths, strips, strict=True):
             save_cloud(path, strip)
-        told = merge_passes(paths, folder / "out")["passes"]
+        told = merge_passes(paths, folder / "out").passes
         project = Project(folder / "out")
         cloud = project.load_cloud()
         shifts = trace_alignment(project, cloud)
@@ -34,14 +34,14 @@ def merged(tmp_path_factory):
         truth = [strip.points[end % 5000] for strip, end in zip(strips, ends, strict=True)]
         errors.append(cloud.points[ends] - truth)
         sigmas.append(np.linalg.norm(shifts(np.array(ends)), axis=2))
-        shares.append([one["laid_on"] for one in told])
+        shares.append([one.laid_on for one in told])
     return np.array(errors), np.array(sigmas), shares
 
 
 def test_each_strip_of_a_chain_is_laid_on_the_one_before(merged):
     for first, second, third in merged[2]:
-        assert first == []
-        assert second == [1.0]
+        assert first == ()
+        assert second == (1.0,)
         assert third == pytest.approx([0.0, 1.0], abs=0.01)
 
 

@@ -2,15 +2,31 @@
 
 import json
 import os
-from datetime import datetime
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from murkscan.survey.origin import name_recording, tell_origin, when_written
-from murkscan.survey.recorded import commands_of, when_began
+from murkscan.project import (
+    CLOUD,
+    EXTRACT,
+    MESH,
+    MOTION,
+    TRIANGULATE,
+    VIEW,
+    CloudResult,
+    ExtractResult,
+    MeshResult,
+    MotionResult,
+    Project,
+    TriangulateResult,
+    ViewResult,
+)
+from murkscan.survey.origin import name_recording, read_calibration, when_written
+from murkscan.survey.recorded import list_commands, when_began
 from murkscan.types.frame_times import FrameTimes
+
+from ..projects import finish
 
 RIG = """
 [calibration.camera]
@@ -25,13 +41,10 @@ parameters = ["a"]
 def test_the_record_of_a_calibration_is_kept_without_its_bulk(tmp_path):
     file = tmp_path / "rig.toml"
     file.write_text(RIG)
-    origin = tell_origin(file, ["scan", "my dive"])
-    assert json.loads(json.dumps(origin)) == {
-        "command": ["scan", "my dive"],
-        "rig_file": str(file),
-        "calibration": {"camera": {"date": "2026-05-01", "verdict": "Good: all of it."}},
+    record = read_calibration(file)
+    assert json.loads(json.dumps(record)) == {
+        "camera": {"date": "2026-05-01", "verdict": "Good: all of it."}
     }
-    assert tell_origin(None, ()) == {}
 
 
 @pytest.mark.parametrize(
@@ -54,34 +67,34 @@ def test_a_recording_is_as_old_as_its_last_file(tmp_path):
     for name, age in (("a.png", 1000), ("b.png", 5000)):
         (tmp_path / name).touch()
         os.utime(tmp_path / name, (age, age))
-    assert datetime.fromisoformat(when_written(tmp_path)).timestamp() == 5000
-    assert datetime.fromisoformat(when_written(tmp_path / "a.png")).timestamp() == 1000
+    assert when_written(tmp_path).timestamp() == 5000
+    assert when_written(tmp_path / "a.png").timestamp() == 1000
     assert when_written(tmp_path / "none.mkv") is None
 
 
-@pytest.mark.parametrize(
-    ("motion", "flags"),
-    [
-        ({"type": "ConstantSpeed", "speed": -0.1, "along": "y"}, "--speed-mm-s -100 --along y"),
-        ({"type": "ConstantStep", "step": 0.0025, "along": "x"}, "--step-mm 2.5 --along x"),
-        (
-            {"type": "PoseLog", "name": "my log.csv", "start_time": 5.0, "time_offset": 0.1},
-            "--poses 'my log.csv' --start-time 5.0 --time-offset-s 0.1",
-        ),
-    ],
-)
-def test_stages_that_were_run_one_by_one_are_lines_that_do_the_same(motion, flags):
-    lines = commands_of("my out", ("extract", "my dive.mkv", "--out", "my out"), motion)
-    assert lines[0] == "murkscan extract 'my dive.mkv' --out 'my out'"
-    assert f"murkscan motion 'my out' {flags}" in lines
-    assert lines[-1] == "murkscan report 'my out'"
-    assert commands_of("out", (), motion) == []
-    assert commands_of("out", ("scan", "a"), motion) == ["murkscan scan a"]
+def test_what_was_typed_for_each_stage_is_listed_once_and_in_order(tmp_path):
+    def stage_by(words, kind, result):
+        finish(Project(tmp_path, words), kind, result)
+
+    stage_by(("extract", "my dive.mkv", "--out", "my out"), EXTRACT, ExtractResult(0, 1, 0, 0, 1))
+    for kind, result in (
+        (TRIANGULATE, TriangulateResult(1, 0)),
+        (MOTION, MotionResult(1)),
+        (CLOUD, CloudResult(1, 0)),
+    ):
+        stage_by(("scan", "x"), kind, result)
+    stage_by((), MESH, MeshResult(0, 0))
+    stage_by(("view", "my out"), VIEW, ViewResult((), 0))
+    assert list_commands(Project(tmp_path, ("report", "my out"))) == [
+        "murkscan extract 'my dive.mkv' --out 'my out'",
+        "murkscan scan x",
+        "murkscan view 'my out'",
+        "murkscan report 'my out'",
+    ]
 
 
 def test_only_a_clock_that_counts_from_1970_tells_when_a_recording_began():
     frames = FrameTimes(np.zeros(1, np.uint32), np.array([2.0]))
-    moment = when_began(frames, {"start_time": 1.75e9, "time_offset": 0.5})
-    assert moment.timestamp() == pytest.approx(1.75e9 + 2.5)
-    assert when_began(frames, {"start_time": 12.0, "time_offset": 0.0}) is None
-    assert when_began(frames, {}) is None
+    assert when_began(frames, 1.75e9 + 0.5).timestamp() == pytest.approx(1.75e9 + 2.5)
+    assert when_began(frames, 12.0) is None
+    assert when_began(frames, 0.0) is None

@@ -13,6 +13,7 @@ import murkscan as ms
 from murkscan.capture import Skip
 from murkscan.geometry.mesh_distance import distance_to_mesh
 from murkscan.io.mesh_files import load_mesh
+from murkscan.project import EXTRACT, TRIANGULATE
 from murkscan.survey.cloud import build_cloud
 from murkscan.survey.demo import Errors, run_demo
 from murkscan.survey.extract import cut_chunks, extract_recording
@@ -61,7 +62,7 @@ def test_about_twelve_overlays_are_kept(scanned):
 
 def test_every_frame_has_a_pose_and_every_point_a_profile(scanned):
     assert len(scanned.load_trajectory().times) == 130
-    dropped = scanned.finished("triangulate").counts()["dropped"]
+    dropped = scanned.finished(TRIANGULATE).result.dropped
     assert len(scanned.load_profile()) == len(scanned.load_stripe()) - dropped
 
 
@@ -198,9 +199,9 @@ def test_a_corrupt_picture_in_the_middle_is_skipped_and_counted(hull, tmp_path):
     rig = ms.load_rig(hull / "rig.toml")
     recording = ms.open_recording(tmp_path / "frames", wavelength=rig.wavelength)
     project = ms.scan(recording, rig, MOTION, out=tmp_path / "out")
-    counts = project.finished("extract").counts()
-    assert (counts["frames"], counts["skipped"]) == (129, 1)
-    assert "000070.png" in counts["skips"][0][2]
+    counts = project.finished(EXTRACT).result
+    assert (counts.frames, counts.skipped) == (129, 1)
+    assert "000070.png" in counts.skips[0][2]
     assert 70 not in project.load_cloud().frame
 
 

@@ -11,13 +11,14 @@ from murkscan.errors import Degenerate, FormatError, InputError, MissingResult
 from murkscan.io.deviation_files import save_deviation_ply
 from murkscan.io.json_files import save_json
 from murkscan.mesh import GridMesh
-from murkscan.project import Project
+from murkscan.project import CLOUD, MESH, CloudResult, MeshResult, Project
 from murkscan.survey.compared import compare_models
 from murkscan.survey.shown import DEVIATION
 from murkscan.survey.view import draw_views
 from murkscan.types.deviation import Deviation
 from murkscan.view import render_viewer
 
+from ..projects import MERGED, finish, save_cloud
 from ..scans import scan_cloud, step
 
 
@@ -37,20 +38,17 @@ LINE = SCAN[SCAN.frame == 3]
 def merged(folder, cloud=LINE):
     """Make the project of a merged cloud, with a surface if it has one."""
     project = Project(folder)
-    project.save_scan({"recording": {}, "rig": {}, "versions": {}, "merged": ["a", "b"]})
+    project.save_scan(MERGED)
     mesh = GridMesh().mesh(cloud)
-    made = {"cloud": {"points": len(cloud)}, "mesh": {"faces": len(mesh.faces)}}
-    inputs = {}
-    for name, result in made.items():
-        stage = project.stage(name, settings={}, inputs=inputs)
-        stage.begin()
-        if name == "cloud":
-            with project.writing_cloud() as write:
-                write(cloud)
-        elif len(mesh.faces):
-            project.save_mesh(mesh)
-        stage.finish(result, since=0.0)
-        inputs = {name: stage.digest}
+    result = CloudResult(len(cloud), outliers=0)
+    made = finish(project, CLOUD, result, make=lambda: save_cloud(project, cloud))
+    finish(
+        project,
+        MESH,
+        MeshResult(len(mesh.vertices), len(mesh.faces)),
+        inputs={"cloud": made.digest},
+        make=lambda: len(mesh.faces) and project.save_mesh(mesh),
+    )
     return project, cloud
 
 
@@ -68,14 +66,14 @@ def measure_deviation(project, cloud, *, name="deviation"):
     deviation = Deviation(values, np.zeros_like(cloud.points), np.zeros(len(cloud)))
     folder = project.root / "measure"
     save_deviation_ply(folder / f"{name}.ply", cloud.points, deviation, np.zeros(len(cloud)))
-    digest = project.finished("cloud").digest
+    digest = project.finished(CLOUD).digest
     save_json(folder / f"{name}.json", {"inputs": {"cloud": digest}})
 
 
 def test_a_merged_cloud_gets_pictures_and_a_page(tmp_path):
     project, cloud = merged(tmp_path / "both", SCAN)
     result = draw_views(project)
-    assert (len(result["pictures"]), result["points"]) == (9, len(cloud))
+    assert (len(result.pictures), result.points) == (9, len(cloud))
     content = shown(project)
     assert content["title"] == "both"
     assert content["pictures"] == "pictures.html"
@@ -145,7 +143,7 @@ def test_before_is_laid_on_after_and_the_page_says_by_how_much(dives):
     first, second = compared.models
     # The same points without noise: what is left is the thinning of the surfaces to be aligned.
     np.testing.assert_allclose(second.vertices, first.vertices, atol=3e-5)
-    moved = compared.alignment["shift_of_centre_m"]
+    moved = compared.alignment.shift_of_centre
     np.testing.assert_allclose(moved, -SHIFT, atol=3e-5)
     assert compared.relation.startswith("2025/scan was laid on 2026/scan: moved (-2.0")
     assert "% of 2026/scan overlaps" in compared.relation
@@ -176,7 +174,7 @@ def test_both_scans_have_the_same_colours(dives):
 
 def test_a_cloud_too_large_for_the_page_is_thinned(tmp_path):
     project, cloud = merged(tmp_path / "both")
-    assert draw_views(project, most=50)["points"] == 50
+    assert draw_views(project, most=50).points == 50
     assert f"{len(cloud):,} points" in shown(project)["models"][0]["note"]
     with pytest.raises(InputError, match="one point or more"):
         draw_views(project, most=0)
@@ -185,12 +183,12 @@ def test_a_cloud_too_large_for_the_page_is_thinned(tmp_path):
 def test_one_profile_has_a_page_and_no_pictures(tmp_path):
     project, cloud = merged(tmp_path / "line")
     result = draw_views(project)
-    assert (result["pictures"], result["points"]) == ([], len(cloud))
+    assert (result.pictures, result.points) == ((), len(cloud))
     assert "Only one profile" in shown(project)["models"][0]["note"]
 
 
 def test_a_scan_without_points_says_so(tmp_path):
     project, _ = merged(tmp_path / "empty", LINE[:0])
     result = draw_views(project)
-    assert (result["pictures"], result["points"]) == ([], 0)
+    assert (result.pictures, result.points) == ((), 0)
     assert "no point was found" in (project.root / "view/index.html").read_text("utf-8")

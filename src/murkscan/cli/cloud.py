@@ -8,6 +8,7 @@ from cyclopts import Parameter
 from ..errors import InputError
 from .paths import ScanFolder
 from .progress import progress_bars
+from .typed import WORDS
 
 
 def cloud(
@@ -40,20 +41,20 @@ def cloud(
     if voxel_mm is not None and not 0 < voxel_mm < float("inf"):
         raise InputError(f"--voxel-mm must be above 0, got {voxel_mm:g}.")
     from ..cloud import Doubtful, SeenThrough, Sparse
-    from ..project import Project
+    from ..project import CLOUD, Project
     from ..survey.cloud import build_cloud
     from ..survey.export import check_export, export_cloud
     from ..survey.merged import is_merged
     from ..survey.scan_rig import load_scan_rig
     from .summary import print_result
 
-    project = Project(out)
+    project = Project(out, WORDS.get())
     for path in export:
         check_export(path)
     rules = (Doubtful(min_posterior), Sparse(), SeenThrough())
     with progress_bars() as progress:
         if is_merged(project):
-            result = project.finished("cloud").counts()
+            result = project.finished(CLOUD).result
         else:
             rig = load_scan_rig(project)
             result = build_cloud(project, rig, rules=rules, frames=frames, progress=progress)

@@ -38,24 +38,27 @@ def extract(
     """
     check_settings(settings)
     from ..io.rig_toml import load_rig
+    from ..project import Project
     from ..survey.extract import extract_recording
     from ..survey.scan import begin_scan
-    from .summary import print_result
+    from .summary import print_remarks, print_result, print_skips
 
     of_recording = load_rig(rig)
     pictures = reading.open(recording, of_recording)
     finder = make_extractor(extractor, settings)
-    project = begin_scan(
-        out,
+    project = Project(out, WORDS.get())
+    begin_scan(
+        project,
         pictures,
         of_recording,
         laser=laser,
         settings={"extractor": finder},
         rig_file=rig,
-        command=WORDS.get(),
     )
     with progress_bars() as progress:
         result = extract_recording(
             project, pictures, of_recording, finder, laser=laser, progress=progress
         )
     print_result("extract", result, out / "extract")
+    print_skips(result.skips)
+    print_remarks(result.remarks, result.attenuation)

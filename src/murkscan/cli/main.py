@@ -25,6 +25,7 @@ _COMMANDS = {
     "measure": "Take measures of a scan, each with its uncertainty.",
     "view": "Draw the surface, and write a page to turn, cut and measure it on.",
     "report": "Write a page on how the scan went.",
+    "check": "Compare every file of a scan with what was written.",
     "simulate": "Make a recording whose truth is known.",
 }
 """Each lies in the file of its name, and is imported when it is called: --help stays instant."""

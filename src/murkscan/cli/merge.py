@@ -7,6 +7,7 @@ from cyclopts import Parameter
 
 from ..errors import InputError
 from .progress import progress_bars
+from .typed import WORDS
 
 
 def merge(
@@ -52,8 +53,9 @@ def merge(
             align=not as_logged,
             reach=None if reach_mm is None else reach_mm / 1e3,
             voxel=None if voxel_mm is None else voxel_mm / 1e3,
+            command=WORDS.get(),
             progress=progress,
         )
-    for one in result["passes"]:
-        print(f"{one['path']}: {one['words']}")
+    for one in result.passes:
+        print(f"{one.path}: {one.words}")
     print_result("merge", result, out / "cloud")

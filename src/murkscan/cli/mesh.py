@@ -10,6 +10,7 @@ from .choices import MesherName, check_settings, make_mesher
 from .options import Settings
 from .paths import ScanFolder
 from .progress import progress_bars
+from .typed import WORDS
 
 
 def mesh(
@@ -58,7 +59,7 @@ def mesh(
         faces=faces,
         paint={"depth": ByDepth(), "signal": BySignal(), "none": None}[colour],
     )
-    project = Project(out)
+    project = Project(out, WORDS.get())
     with progress_bars() as progress:
         chosen = make_mesher(mesher, settings)
         result = build_mesh(project, chosen, finish=finish, progress=progress)

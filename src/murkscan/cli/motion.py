@@ -2,6 +2,7 @@
 
 from .options import MotionFlags
 from .paths import ScanFolder
+from .typed import WORDS
 
 
 def motion(out: ScanFolder, *, flags: MotionFlags = MotionFlags()) -> None:
@@ -13,13 +14,14 @@ def motion(out: ScanFolder, *, flags: MotionFlags = MotionFlags()) -> None:
         Folder of the scan, with a finished extract stage.
     """
     flags.check()
-    from ..project import Project
+    from ..project import EXTRACT, Project
     from ..survey.motion import follow_motion
     from ..survey.scan_rig import load_scan_rig
-    from .summary import print_result
+    from .summary import print_remarks, print_result
 
-    project = Project(out)
+    project = Project(out, WORDS.get())
     rig = load_scan_rig(project)
-    laser = project.finished("extract").key["settings"]["laser"]
+    laser = project.finished(EXTRACT).result.laser
     result = follow_motion(project, flags.make(rig, laser))
     print_result("motion", result, out / "motion")
+    print_remarks(result.remarks)

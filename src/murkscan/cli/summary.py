@@ -1,34 +1,45 @@
 """What a command says when it is done."""
 
+import dataclasses
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ..project import Project
+    from ..project.results import Skipped
+    from ..types.background import Attenuation
 
 _SKIPS_SHOWN = 5
+_UNTOLD = ("laser", "start")
+"""Numbers of a result that other stages want, and nobody else."""
 
 
-def print_result(stage: str, result: dict[str, Any], where: Path) -> None:
-    """Say what one stage has made, and where it lies."""
-    counts = ", ".join(
-        f"{name.replace('_', ' ')} {value:g}" if isinstance(value, float) else
-        f"{name.replace('_', ' ')} {value:,}"
-        for name, value in result.items()
-        if isinstance(value, int | float)
-    )  # fmt: skip
+def print_result(stage: str, result: Any, where: Path) -> None:
+    """Say what one stage has made, and where it lies; of some results only where."""
+    counts = "" if result is None else ", ".join(_counts(result))
     print(f"{stage}: {counts + '; ' if counts else ''}{where}")
-    print_skips(result.get("skips", []))
-    print_remarks(result)
 
 
-def print_remarks(extracted: dict[str, Any]) -> None:
-    """Say what is odd about the recording, and how murky the water was."""
-    from ..survey.recorded import attenuation_of
+def _counts(result: Any) -> Iterator[str]:
+    """Give the numbers of a stage's result, with the words for them."""
+    for field in dataclasses.fields(result):
+        value, words = getattr(result, field.name), field.name.replace("_", " ")
+        if isinstance(value, dict):
+            yield from (f"{words} {cause} {count:,}" for cause, count in value.items())
+        if isinstance(value, bool) or field.name in _UNTOLD:
+            continue
+        if isinstance(value, float):
+            yield f"{words} {value:g} {field.metadata['unit']}"
+        elif isinstance(value, int):
+            yield f"{words} {value:,}"
 
-    for remark in extracted.get("remarks", []):
+
+def print_remarks(remarks: Sequence[str], water: "Attenuation | None" = None) -> None:
+    """Say what is odd about the recording or its poses, and how murky the water was."""
+    for remark in remarks:
         print(f"  note: {remark}")
-    if water := attenuation_of(extracted):
+    if water:
         so = (
             f"so the beam attenuation lies between {water.low:.2g} and {water.high:.2g} per metre"
             if water.is_telling
@@ -37,7 +48,7 @@ def print_remarks(extracted: dict[str, Any]) -> None:
         print(f"  water: the glow fades by {water.effective:.2g} per metre, {so}")
 
 
-def print_skips(skips: list[tuple[int, int, str]]) -> None:
+def print_skips(skips: "Sequence[Skipped]") -> None:
     """Say what could not be read."""
     for _, _, reason in skips[:_SKIPS_SHOWN]:
         print(f"  skipped: {reason}")
@@ -53,19 +64,20 @@ def when_reported(out: Path) -> int | None:
 
 def print_summary(project: "Project") -> None:
     """Say what a whole scan has made, and where it lies."""
-    found, moved = (project.finished(name).counts() for name in ("extract", "motion"))
-    cloud, mesh = (project.finished(name).counts() for name in ("cloud", "mesh"))
-    root = project.root
+    from ..project import CLOUD, EXTRACT, MESH, MOTION
+
+    found, moved = project.finished(EXTRACT).result, project.finished(MOTION).result
+    cloud = project.finished(CLOUD).result
+    faces, root = project.finished(MESH).result.faces, project.root
     print(
-        f"frames     {found['frames']:,} read, {found['skipped']:,} skipped, "
-        f"{found['frames_without_stripe']:,} without a stripe"
+        f"frames     {found.frames:,} read, {found.skipped:,} skipped, "
+        f"{found.frames_without_stripe:,} without a stripe"
     )
-    print_skips(found["skips"])
-    print_remarks(found)
-    print_remarks(moved)
-    print(f"points     {cloud['points']:,}, {cloud['outliers']:,} outliers taken out")
-    print(f"triangles  {mesh['faces']:,}")
-    if not mesh["faces"]:
+    print_skips(found.skips)
+    print_remarks((*found.remarks, *moved.remarks), found.attenuation)
+    print(f"points     {cloud.points:,}, {cloud.outliers:,} outliers taken out")
+    print(f"triangles  {faces:,}")
+    if not faces:
         print("There is no surface: look at extract/overlay to see what was found in the frames.")
         print(f"report     {root / 'report' / 'index.html'}")
         return

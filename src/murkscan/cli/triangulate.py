@@ -3,6 +3,7 @@
 from .choices import MethodName, make_method
 from .paths import ScanFolder
 from .progress import progress_bars
+from .typed import WORDS
 
 
 def triangulate(out: ScanFolder, *, method: MethodName = "ray-sheet") -> None:
@@ -20,7 +21,7 @@ def triangulate(out: ScanFolder, *, method: MethodName = "ray-sheet") -> None:
     from ..survey.triangulate import triangulate_stripes
     from .summary import print_result
 
-    project = Project(out)
+    project = Project(out, WORDS.get())
     with progress_bars() as progress:
         result = triangulate_stripes(
             project, load_scan_rig(project), make_method(method), progress=progress

@@ -7,6 +7,7 @@ from cyclopts import Parameter
 
 from .paths import ScanFolder, require_scan
 from .progress import progress_bars
+from .typed import WORDS
 
 Flag = Annotated[bool, Parameter(negative=())]
 
@@ -44,14 +45,13 @@ def view(
 
     with progress_bars() as progress:
         result = draw_views(
-            Project(out),
+            Project(out, WORDS.get()),
             other=None if other is None else Project(other),
             align=not as_given,
             deviation=deviation,
             most=points,
             progress=progress,
         )
-    counts = {"pictures": len(result["pictures"]), "points": result["points"]}
-    if result.get("relation"):
-        say(result["relation"])
-    print_result("view", counts, out / "view" / "index.html")
+    if result.relation:
+        say(result.relation)
+    print_result("view", result, out / "view" / "index.html")

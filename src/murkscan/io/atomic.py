@@ -20,7 +20,7 @@ def replacing(path: Path) -> Iterator[Path]:
     Raises:
         DeviceError: The disk is full or cannot be written; what stood at the path is untouched.
     """
-    aside = path.with_name(f".{path.stem}.part{path.suffix}")
+    aside = aside_of(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         yield aside
@@ -35,3 +35,8 @@ def replacing(path: Path) -> Iterator[Path]:
     finally:
         with suppress(OSError):
             aside.unlink()
+
+
+def aside_of(path: Path) -> Path:
+    """Name the file that stands in for one that is being written."""
+    return path.with_name(f".{path.stem}.part{path.suffix}")

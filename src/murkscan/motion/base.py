@@ -20,6 +20,13 @@ class AbstractMotion(abc.ABC):
 
     needs_times: ClassVar[bool]
     """Whether the recording must have times of its own."""
+    carries_mount: ClassVar[bool] = False
+    """Whether its poses come through the rig's mount, and so share the mount's errors."""
+
+    @property
+    def start(self) -> float:
+        """What the log's clock shows when recording time is 0 [s]; 0 where there is no log."""
+        return 0.0
 
     @abc.abstractmethod
     def follow(self, times: Scalars, pictures: Scalars) -> Trajectory:

@@ -44,6 +44,12 @@ class PoseLog(AbstractMotion):
     """What the log is called, for the record."""
 
     needs_times: ClassVar[bool] = True
+    carries_mount: ClassVar[bool] = True
+
+    @property
+    def start(self) -> float:
+        """See `AbstractMotion.start`."""
+        return self.start_time + self.time_offset
 
     def __post_init__(self) -> None:
         """Refuse a clock that is no number."""

@@ -1,12 +1,12 @@
 """An alignment in words for the terminal, and in numbers for stage.json."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ..geometry.alignment import Alignment
+from ..project import AlignmentResult, OpenDirectionResult
 from ..types.pose import Pose
 
 
@@ -48,31 +48,33 @@ def turn_round(alignment: Alignment) -> Alignment:
     )
 
 
-def alignment_as_json(alignment: Alignment | None) -> dict[str, Any] | None:
-    """Give an alignment as plain values; None for the pass that stays."""
+def alignment_result(alignment: Alignment | None) -> AlignmentResult | None:
+    """Put an alignment into numbers for stage.json; None for the pass that stays."""
     if alignment is None:
         return None
     shift, turn = _motion(alignment)
     pose = alignment.target_from_source
-    return {
-        "rotation": pose.rotation.tolist(),
-        "translation_m": pose.translation.tolist(),
-        "centre_m": alignment.centre.tolist(),
-        "shift_of_centre_m": shift.tolist(),
-        "turn_rad": turn.tolist(),
-        "covariance_of_turn_and_shift": alignment.covariance.tolist(),
-        "open": [
-            {
-                "words": str(direction),
-                "axis": direction.axis.tolist(),
-                "through_m": direction.through.tolist(),
-            }
+    return AlignmentResult(
+        rotation=_rows(pose.rotation),
+        translation=tuple(pose.translation.tolist()),
+        centre=tuple(alignment.centre.tolist()),
+        shift_of_centre=tuple(shift.tolist()),
+        turn=tuple(turn.tolist()),
+        covariance_of_turn_and_shift=_rows(alignment.covariance),
+        open=tuple(
+            OpenDirectionResult(
+                str(direction), tuple(direction.axis.tolist()), tuple(direction.through.tolist())
+            )
             for direction in alignment.open_directions
-        ],
-        "overlap": alignment.overlap,
-        "matches": alignment.num_matches,
-        "rms_m": alignment.rms,
-    }
+        ),
+        overlap=alignment.overlap,
+        matches=alignment.num_matches,
+        rms=alignment.rms,
+    )
+
+
+def _rows(matrix: np.ndarray) -> tuple[tuple[float, ...], ...]:
+    return tuple(tuple(row) for row in matrix.tolist())
 
 
 def _motion(alignment: Alignment) -> tuple[np.ndarray, np.ndarray]:

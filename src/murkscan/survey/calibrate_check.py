@@ -26,9 +26,8 @@ from ..types.trajectory import Trajectory
 from .board_photos import BoardPhotos
 from .board_stripes import StripeFinder
 from .board_views import find_boards
-from .common_part import moving_rig
 from .progress import Progress, silent
-from .scan_rig import load_scan_rig
+from .scan_rig import load_scan_rig, moving_rig
 
 _FARTHEST = 0.01
 """Distance from a given place within which a point of the scan must lie [m]."""
@@ -132,7 +131,6 @@ def check_in_scan(
             "A known length must be above 0 and its deviation not below, got "
             f"{known * 1e3:g} ± {known_sigma * 1e3:g} mm."
         )
-    project.finished("triangulate")
     rig = moving_rig(project, load_scan_rig(project))
     profile = Profile.concatenate(list(project.load_placed_parts()))
     trajectory = project.load_trajectory()

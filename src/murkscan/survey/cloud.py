@@ -1,24 +1,23 @@
 """Merge a scan's profiles into one cloud, block by block."""
 
-import time
 from collections import Counter
 from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from ..cloud import OUTLIER_RULES, AbstractOutlierRule, SeenCloud, find_outliers, merge_profiles
-from ..project import Project
+from ..project import CLOUD, EXTRACT, MOTION, TRIANGULATE, CloudResult, Project, describe
 from ..types.cloud import PointCloud
 from ..types.laser import Axis
 from ..types.rig import Rig
 from ..types.trajectory import Trajectory
-from .common_part import moving_rig, spread_common
+from .common_part import spread_common
 from .profile_blocks import BLOCK, ProfileBlock, cut_blocks
 from .progress import Progress, silent
-from .settings import describe
+from .scan_rig import moving_rig
+from .stage_runner import run_stage
 
 FRAME_FILES = 500
 """Frames up to which the paper's one cloud a frame is written without being asked for."""
@@ -32,7 +31,7 @@ def build_cloud(
     frames: bool = False,
     block: int = BLOCK,
     progress: Progress = silent,
-) -> dict[str, Any]:
+) -> CloudResult:
     """Run the cloud stage; a scan that does not fit into memory is worked on in blocks.
 
     Args:
@@ -43,46 +42,38 @@ def build_cloud(
         block: Points that are worked on at once, about.
         progress: Told how many blocks are done.
 
-    Returns:
-        Counts: points, outliers that were taken out, and how many of them for each cause.
-
     Raises:
         MissingResult: An earlier stage has not been finished.
         DeviceError: The disk is full.
     """
-    inputs = {name: project.finished(name).digest for name in ("triangulate", "motion")}
-    rig = moving_rig(project, rig)
+    sources = project.finished(TRIANGULATE), project.finished(MOTION)
+    rig, extracted = moving_rig(project, rig), project.finished(EXTRACT).result
     stage = project.stage(
-        "cloud",
+        CLOUD,
         settings={"frames": frames, "rules": describe(tuple(rules))},
-        inputs=inputs | {"covariance": describe(rig.covariance)},
+        inputs={"triangulate": sources[0].digest, "motion": sources[1].digest}
+        | {"covariance": describe(rig.covariance)},
     )
-    if (result := stage.result()) is not None:
-        return result
-    since = time.monotonic()
-    stage.begin()
-    trajectory = project.load_trajectory()
-    axis = rig.lasers[project.finished("extract").key["settings"]["laser"]].axis
-    blocks = cut_blocks(project.load_placed_parts(), block=block)
-    in_files = frames or project.finished("extract").counts()["frames"] <= FRAME_FILES
-    found: Counter[str] = Counter({rule.cause: 0 for rule in rules})
-    points = 0
-    with ExitStack() as stack:
-        write = [stack.enter_context(project.writing_cloud())]
-        if in_files:
-            write.append(stack.enter_context(project.writing_frames()))
-        for done, one in enumerate(blocks):
-            progress("cloud", done, None)
-            cloud, causes = _merge(one, trajectory, rig, axis, rules)
-            for save in write:
-                save(cloud)
-            points += len(cloud)
-            found.update(causes)
-    result = {"points": points, "outliers": found.total()}
-    result |= {f"outliers_by_{cause}": count for cause, count in found.items()}
-    stage.finish(result, since=since)
-    progress("cloud", 1, 1)
-    return result
+
+    def make(trajectory: Trajectory) -> CloudResult:
+        axis = rig.lasers[extracted.laser].axis
+        blocks = cut_blocks(project.load_placed_parts(), block=block)
+        found: Counter[str] = Counter({rule.cause: 0 for rule in rules})
+        points = 0
+        with ExitStack() as stack:
+            write = [stack.enter_context(project.writing_cloud())]
+            if frames or extracted.frames <= FRAME_FILES:
+                write.append(stack.enter_context(project.writing_frames()))
+            for done, one in enumerate(blocks):
+                progress("cloud", done, None)
+                cloud, causes = _merge(one, trajectory, rig, axis, rules)
+                for save in write:
+                    save(cloud)
+                points += len(cloud)
+                found.update(causes)
+        return CloudResult(points, found.total(), dict(found))
+
+    return run_stage(project, stage, make, prepare=project.load_trajectory, progress=progress)
 
 
 def _merge(

@@ -2,27 +2,16 @@
 
 import os
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 
 import numpy as np
 
 from ..optics.uncertainty import common_sigma
-from ..project import Project
 from ..types.arrays import Ratios
 from ..types.profile import Profile
 from ..types.rig import Rig
 
 _PART = 50_000
 """Points that one thread works on."""
-
-
-def moving_rig(project: Project, rig: Rig) -> Rig:
-    """Give the rig without its mount, where the scan's motion is the camera's own."""
-    motion = project.finished("motion").key["settings"]["motion"]
-    if motion["type"] == "PoseLog":
-        return rig
-    covariance = rig.covariance.without("mount.")
-    return replace(rig, vehicle_from_camera=None, covariance=covariance)
 
 
 def spread_common(profile: Profile, rig: Rig) -> Ratios:

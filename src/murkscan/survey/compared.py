@@ -1,13 +1,12 @@
 """Two scans to be shown in one world: before and after."""
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 from ..errors import Degenerate
 from ..geometry.alignment import Alignment
-from ..project import Project
+from ..project import AlignmentResult, Project
 from ..view import Model
-from .alignment_words import alignment_as_json, describe_alignment, turn_round
+from .alignment_words import alignment_result, describe_alignment, turn_round
 from .reference import lay_on, load_reference
 from .shown import choose_points, folder_of, has_surface, load_model
 
@@ -26,8 +25,8 @@ class Compared:
     """Those that have points, named by their folders; the second one moved."""
     relation: str
     """How the second one was moved, in a sentence."""
-    alignment: dict[str, Any] | None
-    """The same as plain values; None where it lies as its own poses put it."""
+    alignment: AlignmentResult | None
+    """The same in numbers; None where it lies as its own poses put it."""
 
 
 def compare_models(
@@ -69,7 +68,7 @@ def compare_models(
     second = second.moved(alignment.target_from_source, first.views)
     words = describe_alignment(alignment, whose=first.name)
     relation = f"{second.name} was laid on {first.name}: {words}."
-    return Compared([first, second], relation, alignment_as_json(alignment))
+    return Compared([first, second], relation, alignment_result(alignment))
 
 
 def _lay(other: Project, project: Project) -> Alignment:

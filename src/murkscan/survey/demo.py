@@ -2,7 +2,6 @@
 
 import time
 from dataclasses import dataclass
-from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +14,7 @@ from ..io.rig_toml import load_rig
 from ..io.text import save_text
 from ..motion import ConstantSpeed
 from ..page import Gallery, Picture, Section, Table, render_page
-from ..project import Project, Stage
+from ..project import Key, Kind, Project, Stage, enter_all, hold
 from ..simulate import as_standalone, parse_scene, read_scene
 from ..types.arrays import Scalars
 from .progress import Progress, silent
@@ -27,8 +26,17 @@ _SPEED = 0.1
 """Of the camera in that scene [m/s]."""
 FALSE = 0.01
 """Distance from the truth beyond which a point is false: a particle, or a ghost [m]."""
+_MEANING = 1
+"""Of the recording that is simulated; another one is made when it changes."""
 _COMPARED = 20_000
 """Points of the cloud that are held against the truth."""
+
+
+@dataclass(frozen=True)
+class _Simulated:
+    """What the simulation says when it is done."""
+
+    frames: int
 
 
 @dataclass(frozen=True)
@@ -92,12 +100,15 @@ def _record(folder: Path, progress: Progress) -> None:
     text, name, beside = read_scene(_SCENE)
     scene = parse_scene(text, name, beside)
     text = as_standalone(text, scene.rig, beside)
-    stage = Stage(folder, {"murkscan": version("murkscan"), "scene": text})
-    if stage.result() is None:
-        since = time.monotonic()
-        stage.begin()
-        simulate_recording(scene, stage.folder, text=text, progress=progress)
-        stage.finish({"frames": len(scene)}, since=since)
+    key = Key(_MEANING, {"scene": text})
+    stage = Stage(folder, Kind("simulate", _Simulated, _MEANING), key)
+    with hold(folder.parent):
+        if stage.result() is None:
+            since = time.monotonic()
+            stage.begin()
+            simulate_recording(scene, stage.folder, text=text, progress=progress)
+            enter_all(folder)
+            stage.finish(_Simulated(len(scene)), since=since)
 
 
 def _scan(
@@ -136,9 +147,9 @@ def _page(ours: Compared, paper: Compared) -> str:
         )
         for one in (paper, ours)
     ]
-    overlays = [{file.name for file in one.project.find_overlays()} for one in (paper, ours)]
+    overlays = [set(one.project.find_overlays()) for one in (paper, ours)]
     common = sorted(overlays[0] & overlays[1])
-    shown = [f"extract/overlay/{name}" for name in common[len(common) // 2 :][:1]]
+    shown = [f"extract/overlay/{name}.png" for name in common[len(common) // 2 :][:1]]
     pictures = [
         Picture(f"{one.project.root.name}/{path}", f"{caption}, by {one.name}")
         for path, caption in [

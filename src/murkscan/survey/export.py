@@ -6,7 +6,7 @@ from pathlib import Path
 from ..cloud import thin_clouds
 from ..errors import InputError
 from ..io.cloud_files import check_cloud_suffix, writing_cloud_file
-from ..project import STAGES, Project
+from ..project import CLOUD, STAGES, Project
 from ..types.cloud import PointCloud
 from .progress import Progress, silent
 
@@ -32,8 +32,7 @@ def export_cloud(
         MissingDependency: The format needs the extra `[formats]`, which is not installed.
         DeviceError: The disk is full.
     """
-    stage = project.finished("cloud")
-    count = stage.counts()["points"]
+    count = project.finished(CLOUD).result.points
     check_export(path)
     if count == 0:
         raise InputError(f"The cloud of {project.root} has no points; there is nothing to export.")
@@ -68,7 +67,7 @@ def require_outside_stages(path: Path) -> None:
     path = path.resolve()
     for root in path.parents:
         stage = path.relative_to(root).parts[0]
-        if stage in (*STAGES, "measure") and (root / "scan.json").exists():
+        if stage in (*(kind.word for kind in STAGES), "measure") and (root / "scan.json").exists():
             raise InputError(
                 f"{path} lies among the files of the {stage} stage; export to another folder."
             )

@@ -1,24 +1,23 @@
 """Find the stripe in every frame of a recording, in chunks that can be resumed."""
 
 import os
-import time
 from collections import deque
 from collections.abc import Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
-from typing import Any
+from itertools import count
 
 from ..capture import AbstractRecording, Skip
 from ..errors import InputError
 from ..extract import AbstractExtractor
-from ..project import Project
+from ..project import EXTRACT, ExtractResult, PartNote, Project, describe
 from ..types.background import Background
 from ..types.frame import Frame
 from ..types.rig import Rig
 from ..types.stripe import Stripe
-from .overlay import draw_overlays, keep_overlays
+from .overlay import choose_overlays, draw_overlays, name_candidates
 from .progress import Progress, silent
-from .settings import describe
+from .stage_runner import run_stage
 
 CHUNK = 64
 """Frames a part: 27 MB of pictures at 720 × 576."""
@@ -49,7 +48,7 @@ def extract_recording(
     *,
     laser: int = 0,
     progress: Progress = silent,
-) -> dict[str, Any]:
+) -> ExtractResult:
     """Run the extract stage; parts that are there already are kept.
 
     Args:
@@ -60,10 +59,6 @@ def extract_recording(
         laser: Number of the laser whose stripe is looked for.
         progress: Told of each part.
 
-    Returns:
-        Counts: frames, skipped, frames_without_stripe, points; the reasons of skips; what is odd
-        about the recording, and how murky the water was, as far as the extractor tells.
-
     Raises:
         InputError: The recording is not of this rig.
         FormatError: Nothing of the recording can be read.
@@ -71,24 +66,21 @@ def extract_recording(
     """
     check_recording(recording, rig, laser)
     stage = project.stage(
-        "extract",
+        EXTRACT,
         settings={"extractor": describe(extractor), "laser": laser},
         inputs={"recording": recording.fingerprint(), "rig": describe(rig)},
     )
-    if (result := stage.result()) is not None:
-        return result
-    since = time.monotonic()
-    stage.begin()
-    progress("extract", 0, recording.num_frames)
-    background = extractor.learn(recording.sample(_SAMPLES), rig, laser=laser)
-    project.save_background(describe(background))
-    job = _Job(project, rig, extractor, background, laser, overlay_step(recording))
-    for part in _run(job, recording):
-        progress("extract", (part + 1) * CHUNK, recording.num_frames)
-    keep_overlays(project)
-    result = _count(project) | _tell(background)
-    stage.finish(result, since=since)
-    return result
+
+    def make(_: None) -> ExtractResult:
+        background = project.load_background()
+        if background is None:
+            background = extractor.learn(recording.sample(_SAMPLES), rig, laser=laser)
+            project.save_background(background)
+        job = _Job(project, rig, extractor, background, laser, overlay_step(recording))
+        _extract_parts(job, recording, progress)
+        return _count(job)
+
+    return run_stage(project, stage, make, prepare=lambda: None, progress=progress)
 
 
 def check_recording(recording: AbstractRecording, rig: Rig, laser: int) -> None:
@@ -103,7 +95,7 @@ def check_recording(recording: AbstractRecording, rig: Rig, laser: int) -> None:
 
 
 def overlay_step(recording: AbstractRecording) -> int:
-    """Give the distance between frames that are drawn; `keep_overlays` thins them to a few."""
+    """Give the distance between frames that are drawn; `choose_overlays` thins them to a few."""
     return max((recording.num_frames or 64 * CHUNK) // 8, 1)
 
 
@@ -119,24 +111,42 @@ class _Job:
     overlay_step: int
 
     def extract(self, chunk: _Chunk) -> int:
-        """Make one part: its stripes, its overlays, and last its note."""
+        """Make one part: its overlays, its stripes, and last its note."""
         stripes = self.extractor.extract(chunk.frames, self.rig, self.background, laser=self.laser)
         found = [
             (frame, stripe)
             for frame, stripe in zip(chunk.frames, stripes, strict=True)
             if chunk.owns(frame.index)
         ]
-        draw_overlays(self.project, found, step=self.overlay_step)
-        note = {
-            "frames": [frame.index for frame, _ in found],
-            "times": [frame.time for frame, _ in found],
-            "points": [len(stripe) for _, stripe in found],
-            "skips": [[skip.index, skip.count, skip.reason] for skip in chunk.skips],
-        }
+        note = PartNote(
+            frames=tuple(frame.index for frame, _ in found),
+            times=tuple(frame.time for frame, _ in found),
+            points=tuple(len(stripe) for _, stripe in found),
+            skips=tuple((skip.index, skip.count, skip.reason) for skip in chunk.skips),
+        )
+        draw_overlays(self.project, found, note, step=self.overlay_step)
         self.project.save_stripe_part(
             chunk.part, Stripe.concatenate([stripe for _, stripe in found]), note
         )
         return chunk.part
+
+
+def _extract_parts(job: _Job, recording: AbstractRecording, progress: Progress) -> None:
+    """Make the parts that are missing, and keep the overlays that are chosen among all."""
+    for part in _run(job, recording):
+        progress("extract", (part + 1) * CHUNK, recording.num_frames)
+    # A drawing may have been lost with everything else of its part in place: then that is redone.
+    lost = choose_overlays(_notes(job), step=job.overlay_step) - {*job.project.find_overlays()}
+    for part, note in list(job.project.load_stripe_parts()):
+        if lost.intersection(name_candidates(note, step=job.overlay_step)):
+            job.project.discard_stripe_part(part)
+    if lost:
+        for _ in _run(job, recording):
+            progress("extract", 0, None)
+    chosen = choose_overlays(_notes(job), step=job.overlay_step)
+    for name in job.project.find_overlays():
+        if name not in chosen:
+            job.project.remove_overlay(name)
 
 
 def _run(job: _Job, recording: AbstractRecording) -> Iterator[int]:
@@ -156,13 +166,12 @@ def _run(job: _Job, recording: AbstractRecording) -> Iterator[int]:
 
 
 def _missing_chunks(job: _Job, recording: AbstractRecording) -> Iterator[_Chunk]:
-    first = 0
-    while job.project.has_stripe_part(first):
-        first += 1
+    there = {part for part, _ in job.project.load_stripe_parts()}
+    first = next(part for part in count() if part not in there)
     halo, skips = job.extractor.look_ahead, list[Skip]()
     frames = recording.frames(max(first * CHUNK - halo, 0), on_skip=skips.append)
     for chunk in cut_chunks(frames, skips, first=first, halo=halo):
-        if not job.project.has_stripe_part(chunk.part):
+        if chunk.part not in there:
             yield chunk
 
 
@@ -203,27 +212,20 @@ def _cut(part: int, kept: list[Frame], skips: list[Skip], halo: int) -> _Chunk:
     return _Chunk(part, near, own)
 
 
-def _tell(background: Background) -> dict[str, Any]:
-    """Give what was learnt that a user wants to know."""
-    water = background.attenuation
-    return {
-        "remarks": list(background.remarks),
-        "attenuation": water
-        and {
-            "effective_per_m": water.effective,
-            "between_per_m": [water.low, water.high],
-        },
-    }
+def _notes(job: _Job) -> list[PartNote]:
+    return [note for _, note in job.project.load_stripe_parts()]
 
 
-def _count(project: Project) -> dict[str, Any]:
-    notes = [note for _, note in project.load_stripe_notes()]
-    points = [count for note in notes for count in note["points"]]
-    skips = [skip for note in notes for skip in note["skips"]]
-    return {
-        "frames": len(points),
-        "skipped": sum(count for _, count, _ in skips),
-        "frames_without_stripe": points.count(0),
-        "points": sum(points),
-        "skips": skips,
-    }
+def _count(job: _Job) -> ExtractResult:
+    points = [number for note in _notes(job) for number in note.points]
+    skips = tuple(skip for note in _notes(job) for skip in note.skips)
+    return ExtractResult(
+        laser=job.laser,
+        frames=len(points),
+        skipped=sum(number for _, number, _ in skips),
+        frames_without_stripe=points.count(0),
+        points=sum(points),
+        skips=skips,
+        remarks=job.background.remarks,
+        attenuation=job.background.attenuation,
+    )

@@ -7,7 +7,7 @@ from typing import Any
 
 from ..errors import InputError
 from ..io.json_files import save_json
-from ..project import Project
+from ..project import CLOUD, Project
 from ..types.measurement import Measurement
 from ..types.quantity import Quantity
 
@@ -40,7 +40,7 @@ def save_measurement(project: Project, name: str, measured: Measurement) -> Path
         "format": 1,
         "kind": measured.kind,
         "murkscan": version("murkscan"),
-        "inputs": {"cloud": project.finished("cloud").digest},
+        "inputs": {"cloud": project.finished(CLOUD).digest},
         "quantities": quantities,
         "details": dict(measured.details),
     }

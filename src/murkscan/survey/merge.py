@@ -1,14 +1,12 @@
 """Lay passes over one object on another, and merge them into one cloud."""
 
 import platform
-import shutil
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from itertools import chain
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -16,11 +14,11 @@ from ..cloud import thin_clouds
 from ..errors import Degenerate, InputError, MissingResult, NotEnoughData
 from ..geometry.alignment import Alignment, align_clouds
 from ..io.cloud_files import check_cloud_suffix, iterate_cloud_file
-from ..project import Project
+from ..project import CLOUD, MOTION, CloudResult, MotionResult, PassResult, Project, ScanRecord
 from ..types.cloud import PointCloud
 from ..types.pose import Pose
 from ..types.trajectory import Trajectory
-from .alignment_words import alignment_as_json, describe_alignment
+from .alignment_words import alignment_result, describe_alignment
 from .matched import share_matches
 from .merged import is_merged, load_moments, load_way
 from .progress import Progress, silent
@@ -96,8 +94,9 @@ def merge_passes(
     align: bool = True,
     reach: float | None = None,
     voxel: float | None = None,
+    command: Sequence[str] = (),
     progress: Progress = silent,
-) -> dict[str, Any]:
+) -> CloudResult:
     """Make one cloud of several, in the frame of the first.
 
     Args:
@@ -106,11 +105,8 @@ def merge_passes(
         align: Whether to correct where the passes lie; otherwise they stay as logged.
         reach: Distance up to which surfaces are looked for in each other's place [m].
         voxel: Edge of the voxels to thin the result to [m]; None keeps all points.
+        command: The words that were typed after `murkscan`, for the record.
         progress: Told how many passes are aligned.
-
-    Returns:
-        points, and passes: for each its path, frames, points that were left out since they
-        cannot be, correction, share of its matches in each pass it was laid on, and words for it.
 
     Raises:
         InputError: out is no new folder, a pass is empty or numbers its frames too high, or the
@@ -122,32 +118,34 @@ def merge_passes(
         DeviceError: The disk is full.
     """
     passes = [Pass(path) for path in paths]
-    project = Project(out)
+    project = Project(out, tuple(command))
     project.check_writable()
     if (out / "scan.json").exists() and not is_merged(project):
         raise InputError(f"{out} holds a scan; give a new folder for the merged cloud with --out.")
     if out.resolve() in [path.resolve() for path in paths]:
         raise InputError(f"{out} is one of the passes; give a new folder with --out.")
-    since = time.monotonic()
     counts, left_out = zip(*(one.count() for one in passes), strict=True)
     laid = _align_all(passes, counts, reach, progress) if align else [_STAYS] * len(passes)
     told, moved = _place(passes, laid, left_out)
     blocks = iter(moved if voxel is None else thin_clouds(moved, voxel))
     # What is refused is refused by now, before anything is written.
     blocks = chain([next(blocks)], blocks)
-    project.save_scan(_record(paths))
     settings = {"align": align, "reach": reach, "voxel": voxel}
     inputs = {"passes": [[str(one.path), count] for one, count in zip(passes, counts, strict=True)]}
-    stage = project.stage("cloud", settings=settings, inputs=inputs)
-    stage.begin()
-    points = 0
-    with project.writing_cloud() as write:
-        for block in blocks:
-            write(block)
-            points += len(block)
-    result = {"points": points, "outliers": 0, "passes": told}
-    stage.finish(result, since=since)
-    _follow(project, moved, since)
+    stage = project.stage(CLOUD, settings=settings, inputs=inputs)
+    with project.hold():
+        since = time.monotonic()
+        project.save_scan(_record(paths, project.command))
+        stage.begin()
+        points = 0
+        with project.writing_cloud() as write:
+            for block in blocks:
+                write(block)
+                points += len(block)
+                progress("merge", points, None)
+        result = CloudResult(points, outliers=0, passes=tuple(told))
+        stage.finish(result, since=since)
+        _follow(project, moved, since)
     return result
 
 
@@ -155,27 +153,26 @@ def _follow(project: Project, moved: "_Moved", since: float) -> None:
     """Write where the camera was, pass after pass, if each pass knows it."""
     ways = list(moved.ways())
     known = [way for way in ways if way is not None]
-    stage = project.stage("motion", settings={}, inputs={"cloud": project.finished("cloud").digest})
-    if len(known) < len(ways):
-        shutil.rmtree(stage.folder, ignore_errors=True)
-        return
+    stage = project.stage(MOTION, settings={}, inputs={"cloud": project.finished(CLOUD).digest})
     stage.begin()
+    if len(known) < len(ways):
+        return
     columns = ("times", "positions", "quaternions")
     joined = (np.concatenate([getattr(way, name) for way in known]) for name in columns)
     project.save_trajectory(Trajectory(*joined))
-    stage.finish({"poses": sum(len(way.times) for way in known)}, since=since)
+    stage.finish(MotionResult(sum(len(way.times) for way in known)), since=since)
 
 
-def _record(paths: Sequence[Path]) -> dict[str, Any]:
+def _record(paths: Sequence[Path], command: Sequence[str]) -> ScanRecord:
     """Give what scan.json says of a merged cloud: it has no recording and no rig of its own."""
     versions = {name: version(name) for name in ("murkscan", "numpy", "scipy", "small-gicp")}
-    return {
-        "format": 1,
-        "versions": versions | {"python": platform.python_version()},
-        "merged": [str(path) for path in paths],
-        "recording": {},
-        "rig": {},
-    }
+    return ScanRecord(
+        versions=versions | {"python": platform.python_version()},
+        recording=None,
+        rig={},
+        command=tuple(command),
+        merged=tuple(str(path) for path in paths),
+    )
 
 
 @dataclass(frozen=True)
@@ -209,7 +206,7 @@ class _Moved:
 
 def _place(
     passes: Sequence[Pass], laid: Sequence[Laid], left_out: Sequence[int]
-) -> tuple[list[dict[str, Any]], _Moved]:
+) -> tuple[list[PassResult], _Moved]:
     told, first_frames, ranges, following = [], [], [], 0
     for one, (alignment, shares), broken in zip(passes, laid, left_out, strict=True):
         frames = [(int(b.frame.min()), int(b.frame.max())) for b in one if len(b)]
@@ -222,14 +219,14 @@ def _place(
         first_frames.append(following - low)
         ranges.append((low, high))
         told.append(
-            {
-                "path": str(one.path),
-                "frames": [following, following + high - low],
-                "left_out": broken,
-                "words": describe_alignment(alignment) + _say_left_out(broken),
-                "alignment": alignment_as_json(alignment),
-                "laid_on": list(shares),
-            }
+            PassResult(
+                path=str(one.path),
+                frames=(following, following + high - low),
+                left_out=broken,
+                words=describe_alignment(alignment) + _say_left_out(broken),
+                alignment=alignment_result(alignment),
+                laid_on=tuple(shares),
+            )
         )
         following += high - low + _GAP
     poses = [Pose.identity() if a is None else a.target_from_source for a, _ in laid]

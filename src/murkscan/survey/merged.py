@@ -5,7 +5,7 @@ from contextlib import suppress
 import numpy as np
 
 from ..errors import FormatError, InputError, MissingResult
-from ..project import Project
+from ..project import CLOUD, Project
 from ..types.cloud import PointCloud
 from ..types.frame_times import FrameTimes
 from ..types.trajectory import Trajectory
@@ -14,7 +14,7 @@ from ..types.trajectory import Trajectory
 def is_merged(project: Project) -> bool:
     """Tell whether a project's cloud was merged from others, so that no stage can make it anew."""
     with suppress(MissingResult, FormatError):
-        return "merged" in project.load_scan()
+        return project.load_scan().merged is not None
     return False
 
 
@@ -65,6 +65,6 @@ def split_passes(project: Project, cloud: PointCloud) -> list[PointCloud]:
     """
     if not is_merged(project):
         return [cloud]
-    ranges = [one["frames"] for one in project.finished("cloud").counts()["passes"]]
+    ranges = [one.frames for one in project.finished(CLOUD).result.passes]
     parts = [cloud[(cloud.frame >= low) & (cloud.frame <= high)] for low, high in ranges]
     return [part for part in parts if len(part)]

@@ -1,22 +1,20 @@
 """Make a surface from a scan's cloud."""
 
-import time
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ..io.mesh_files import check_mesh_suffix, save_mesh
 from ..mesh import AbstractMesher, AbstractPaint, ByDepth, close_holes, decimate
-from ..project import Project
+from ..project import CLOUD, MESH, MeshResult, Project, describe
 from ..types.cloud import PointCloud
 from ..types.mesh import Mesh
 from .export import require_outside_stages
 from .merged import load_way, split_passes
 from .progress import Progress, silent
-from .settings import describe
+from .stage_runner import run_stage
 
 
 @dataclass(frozen=True)
@@ -37,7 +35,7 @@ def build_mesh(
     *,
     finish: Finish | None = None,
     progress: Progress = silent,
-) -> dict[str, Any]:
+) -> MeshResult:
     """Run the mesh stage.
 
     Args:
@@ -47,8 +45,7 @@ def build_mesh(
         progress: Told when it begins and when it is done.
 
     Returns:
-        Counts: vertices and faces; both 0 for a cloud that has no two neighbouring profiles. Where
-        holes were to be closed, how many were and were not, and how many faces close them.
+        No vertices and faces for a cloud that has no two neighbouring profiles.
 
     Raises:
         MissingResult: The cloud stage has not been finished.
@@ -56,26 +53,25 @@ def build_mesh(
         MissingDependency: The mesher needs an extra that is not installed.
         DeviceError: The disk is full.
     """
-    finish = finish or Finish()
+    asked = finish or Finish()
     stage = project.stage(
-        "mesh",
-        settings={"mesher": describe(mesher), "finish": describe(finish)},
-        inputs={"cloud": project.finished("cloud").digest},
+        MESH,
+        settings={"mesher": describe(mesher), "finish": describe(asked)},
+        inputs={"cloud": project.finished(CLOUD).digest},
     )
-    if (result := stage.result()) is not None:
+
+    def prepare() -> tuple[Mesh, MeshResult]:
+        cloud = project.load_cloud()
+        painted = replace(asked, paint=_towards(asked.paint, project))
+        return _finish(mesher.mesh_passes(split_passes(project, cloud)), cloud, painted)
+
+    def make(made: tuple[Mesh, MeshResult]) -> MeshResult:
+        mesh, result = made
+        if result.faces:
+            project.save_mesh(mesh)
         return result
-    since = time.monotonic()
-    progress("mesh", 0, None)
-    cloud = project.load_cloud()
-    finish = replace(finish, paint=_towards(finish.paint, project))
-    mesh, holes = _finish(mesher.mesh_passes(split_passes(project, cloud)), cloud, finish)
-    stage.begin()
-    if len(mesh.faces):
-        project.save_mesh(mesh)
-    result = {"vertices": len(mesh.vertices), "faces": len(mesh.faces), **holes}
-    stage.finish(result, since=since)
-    progress("mesh", 1, 1)
-    return result
+
+    return run_stage(project, stage, make, prepare=prepare, progress=progress)
 
 
 def export_mesh(project: Project, path: Path) -> int:
@@ -107,21 +103,22 @@ def check_mesh_export(path: Path) -> None:
     require_outside_stages(path)
 
 
-def _finish(mesh: Mesh, cloud: PointCloud, finish: Finish) -> tuple[Mesh, dict[str, int]]:
-    counts: dict[str, int] = {}
+def _finish(mesh: Mesh, cloud: PointCloud, finish: Finish) -> tuple[Mesh, MeshResult]:
+    closed = left = None
     if finish.largest_hole is not None:
-        closed = close_holes(mesh, largest=finish.largest_hole)
-        mesh, counts = (
-            closed.mesh,
-            {"holes_closed": closed.num_closed, "holes_left": closed.num_left},
-        )
+        filled = close_holes(mesh, largest=finish.largest_hole)
+        mesh, closed, left = filled.mesh, filled.num_closed, filled.num_left
     if finish.faces is not None:
         mesh = decimate(mesh, faces=finish.faces)
-    if mesh.filled is not None:
-        counts["faces_filled"] = int(mesh.filled.sum())
     if finish.paint is not None and len(mesh.faces):
         mesh = replace(mesh, colours=finish.paint.paint(mesh, cloud))
-    return mesh, counts
+    return mesh, MeshResult(
+        vertices=len(mesh.vertices),
+        faces=len(mesh.faces),
+        holes_closed=closed,
+        holes_left=left,
+        faces_filled=None if mesh.filled is None else int(mesh.filled.sum()),
+    )
 
 
 def _towards(paint: AbstractPaint | None, project: Project) -> AbstractPaint | None:

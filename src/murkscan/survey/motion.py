@@ -1,54 +1,53 @@
 """Where the camera was in each frame of a scan."""
 
-import time
-from typing import Any
-
 import numpy as np
 
 from ..capture import AbstractRecording
 from ..errors import InputError
 from ..motion import AbstractMotion
-from ..project import Project
-from .settings import describe
+from ..project import EXTRACT, MOTION, MotionResult, Project, describe
+from ..types.trajectory import Trajectory
+from .progress import silent
+from .scan_rig import load_recording_record
+from .stage_runner import run_stage
 
 
-def follow_motion(project: Project, motion: AbstractMotion) -> dict[str, Any]:
+def follow_motion(project: Project, motion: AbstractMotion) -> MotionResult:
     """Run the motion stage.
-
-    Returns:
-        The duration [s], the length of the path [m], the number of poses, the frames that have
-        none, and remarks on them.
 
     Raises:
         MissingResult: The extract stage has not been finished.
         InputError: The recording has no times and the motion needs them, or they lie outside its
             log.
     """
-    recording = project.load_scan()["recording"]
     stage = project.stage(
-        "motion",
+        MOTION,
         settings={"motion": describe(motion)},
-        inputs={"extract": project.finished("extract").digest},
+        inputs={"extract": project.finished(EXTRACT).digest},
     )
-    if (result := stage.result()) is not None:
-        return result
-    since = time.monotonic()
-    check_times(recording["path"], motion, is_timed=recording["is_timed"])
+
     times = project.load_frame_times()
-    pictures = times.frame.astype(float) / recording["fields_per_picture"]
-    trajectory = motion.follow(times.time, pictures)
-    stage.begin()
-    project.save_trajectory(trajectory)
-    steps = np.linalg.norm(np.diff(trajectory.positions, axis=0), axis=1)
-    result = {
-        "poses": len(trajectory.times),
-        "frames_without_pose": len(times) - len(trajectory.times),
-        "duration_s": float(np.ptp(times.time)),
-        "length_m": float(steps.sum()),
-        "remarks": list(motion.remarks(times.time)),
-    }
-    stage.finish(result, since=since)
-    return result
+
+    def prepare() -> Trajectory:
+        recording = load_recording_record(project)
+        check_times(recording.path, motion, is_timed=recording.is_timed)
+        pictures = times.frame.astype(float) / recording.fields_per_picture
+        return motion.follow(times.time, pictures)
+
+    def make(trajectory: Trajectory) -> MotionResult:
+        project.save_trajectory(trajectory)
+        steps = np.linalg.norm(np.diff(trajectory.positions, axis=0), axis=1)
+        return MotionResult(
+            poses=len(trajectory.times),
+            frames_without_pose=len(times) - len(trajectory.times),
+            duration=float(np.ptp(times.time)),
+            length=float(steps.sum()),
+            remarks=motion.remarks(times.time),
+            carries_mount=motion.carries_mount,
+            start=motion.start,
+        )
+
+    return run_stage(project, stage, make, prepare=prepare, progress=silent)
 
 
 _PROBES = 1000

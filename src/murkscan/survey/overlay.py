@@ -1,10 +1,13 @@
-"""Pictures of what was found: about twelve frames of a recording, among them the poorest."""
+"""Pictures of what was found: about twelve frames of a recording, among them the poorest.
 
-from collections.abc import Sequence
-from pathlib import Path
+Which frames are drawn, and which of the drawings stay, follows from the notes of the parts alone:
+so a run that was killed, or lost a part, ends with the same pictures as any other.
+"""
+
+from collections.abc import Iterable, Sequence
 
 from ..extract import draw_stripe
-from ..project import Project
+from ..project import PartNote, Project
 from ..types.frame import Frame
 from ..types.stripe import Stripe
 
@@ -16,36 +19,45 @@ _POOREST = 4
 """Overlays kept of frames with the fewest points."""
 
 
-def draw_overlays(project: Project, found: Sequence[tuple[Frame, Stripe]], *, step: int) -> None:
-    """Draw every step-th frame of a chunk, and its poorest one that is not among them."""
-    regular = [pair for pair in found if pair[0].index % step == step // 2]
-    for frame, stripe in regular:
-        project.save_overlay(f"{frame.index:06d}", draw_stripe(frame, stripe))
-    others = [pair for pair in found if pair[0].index % step != step // 2]
-    if others:
-        frame, stripe = min(others, key=lambda pair: len(pair[1]))
-        project.save_overlay(f"{frame.index:06d}{_POOR}", draw_stripe(frame, stripe))
+def draw_overlays(
+    project: Project, found: Sequence[tuple[Frame, Stripe]], note: PartNote, *, step: int
+) -> None:
+    """Draw the frames of a part that may be chosen to stay."""
+    drawn = name_candidates(note, step=step)
+    for frame, stripe in found:
+        for name in drawn:
+            if _frame_of(name) == frame.index:
+                project.save_overlay(name, draw_stripe(frame, stripe))
 
 
-def keep_overlays(project: Project) -> None:
-    """Of all that were drawn keep some, evenly, and of the poorest frames the poorest few.
+def name_candidates(note: PartNote, *, step: int) -> list[str]:
+    """Name every step-th frame of a part, and its poorest one that is not among them."""
+    regular = [index for index in note.frames if index % step == step // 2]
+    others = [
+        (count, index)
+        for index, count in zip(note.frames, note.points, strict=True)
+        if index not in regular
+    ]
+    poorest = [min(others)[1]] if others else []
+    return [f"{index:06d}" for index in regular] + [f"{index:06d}{_POOR}" for index in poorest]
+
+
+def choose_overlays(notes: Iterable[PartNote], *, step: int) -> set[str]:
+    """Choose of all candidates some, evenly, and of the poorest frames the poorest few.
 
     A frame without a stripe says little: those that have one come first.
     """
-    notes = [note for _, note in project.load_stripe_notes()]
-    points = {
-        index: count
-        for note in notes
-        for index, count in zip(note["frames"], note["points"], strict=True)
-    }
-    drawn = project.find_overlays()
-    poor = [file for file in drawn if file.stem.endswith(_POOR)]
-    poor.sort(key=lambda file: points[_frame_of(file)] or len(points) * 1_000_000)
-    regular = [file for file in drawn if not file.stem.endswith(_POOR)]
-    step = -(-len(regular) // _REGULAR) or 1
-    for file in {*poor[_POOREST:], *regular} - set(regular[step // 2 :: step]):
-        file.unlink()
+    points: dict[int, int] = {}
+    drawn: list[str] = []
+    for note in notes:
+        points.update(zip(note.frames, note.points, strict=True))
+        drawn += name_candidates(note, step=step)
+    poor = [name for name in sorted(drawn) if name.endswith(_POOR)]
+    poor.sort(key=lambda name: (points[_frame_of(name)] == 0, points[_frame_of(name)]))
+    regular = [name for name in sorted(drawn) if not name.endswith(_POOR)]
+    stride = -(-len(regular) // _REGULAR) or 1
+    return {*poor[:_POOREST], *regular[stride // 2 :: stride]}
 
 
-def _frame_of(overlay: Path) -> int:
-    return int(overlay.stem.removesuffix(_POOR))
+def _frame_of(overlay: str) -> int:
+    return int(overlay.removesuffix(_POOR))

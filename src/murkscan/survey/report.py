@@ -1,25 +1,32 @@
 """Tell how a scan went: one page for people, one file for programs."""
 
-import hashlib
-import json
 import math
-import time
-from typing import Any
+from dataclasses import replace
 
 from ..errors import InputError
-from ..io.json_files import load_json
-from ..project import STAGES, Project
+from ..io.values import as_plain
+from ..project import (
+    CLOUD,
+    EXTRACT,
+    MESH,
+    REPORT,
+    STAGES,
+    VIEW,
+    Project,
+    ReportResult,
+    digest,
+)
 from ..report import ScanSummary, Shown, as_html, as_json, summarise, with_coverage
 from .kept import kept_profiles
-from .merged import require_recording
 from .progress import Progress, silent
 from .recorded import tell_recording
-from .scan_rig import load_scan_rig
+from .scan_rig import load_recording_record, load_scan_rig
+from .stage_runner import run_stage
 
 
 def write_report(
     project: Project, *, spacing: float | None = None, progress: Progress = silent
-) -> dict[str, Any]:
+) -> ReportResult:
     """Run the report stage, from what the other stages have left.
 
     Args:
@@ -27,86 +34,69 @@ def write_report(
         spacing: Wanted spacing of the points [m]; gaps are judged by the scan's own unless given.
         progress: Told when it begins and ends.
 
-    Returns:
-        Counts: frames, skipped, frames_without_stripe, points.
-
     Raises:
         InputError: The spacing is not above 0, or the cloud was merged from other scans.
         MissingResult: The view stage has not been finished.
         DeviceError: The disk is full.
     """
-    require_recording(project)
+    load_recording_record(project)
     if spacing is not None and not 0 < spacing < math.inf:
         raise InputError(f"The wanted spacing must be above 0 mm, got {1e3 * spacing:g} mm.")
+    told = replace(project.load_scan(), started=None)
     stage = project.stage(
-        "report",
+        REPORT,
         settings={"spacing": spacing},
-        inputs={"view": project.finished("view").digest, "scan": _digest(project.load_scan())},
+        inputs={"view": project.finished(VIEW).digest, "scan": digest(as_plain(told))},
     )
-    if (result := stage.result()) is not None:
-        return result
-    since = time.monotonic()
-    progress("report", 0, None)
-    summary = _summarise(project, spacing)
-    stage.begin()
-    project.save_report(as_json(summary), as_html(summary))
-    result = {
-        "frames": summary.num_frames,
-        "skipped": summary.recorded.num_skipped,
-        "frames_without_stripe": summary.num_empty,
-        "points": summary.num_points,
-    }
-    stage.finish(result, since=since)
-    progress("report", 1, 1)
-    return result
 
+    def make(summary: ScanSummary) -> ReportResult:
+        project.save_report(as_json(summary), as_html(summary))
+        return ReportResult(
+            frames=summary.num_frames,
+            skipped=summary.recorded.num_skipped,
+            frames_without_stripe=summary.num_empty,
+            points=summary.num_points,
+        )
 
-def _digest(scan: dict[str, Any]) -> str:
-    """Give a text that changes with what scan.json says, but for when it was said."""
-    told = {name: value for name, value in scan.items() if name != "started"}
-    return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()[:16]
+    def prepare() -> ScanSummary:
+        return _summarise(project, spacing)
+
+    return run_stage(project, stage, make, prepare=prepare, progress=progress)
 
 
 def _summarise(project: Project, spacing: float | None) -> ScanSummary:
-    scan, extract = project.load_scan(), project.finished("extract")
-    stages = {name: project.finished(name) for name in STAGES if name != "report"}
+    scan, stages = project.load_scan(), {kind.word: project.finished(kind) for kind in STAGES[:-1]}
     frames, trajectory = project.load_placed_times(), project.load_trajectory()
-    mesh = stages["mesh"].counts()
+    mesh, background = project.finished(MESH).result, project.load_background()
     summary = summarise(
         tell_recording(project, scan),
         load_scan_rig(project),
         project.load_placed_parts(),
         frames=frames,
-        laser=extract.key["settings"]["laser"],
+        laser=project.finished(EXTRACT).result.laser,
         trajectory=trajectory,
         cloud=project.iterate_cloud(),
-        num_outliers=stages["cloud"].counts()["outliers"],
-        mesh_size=(mesh["vertices"], mesh["faces"]),
+        num_outliers=project.finished(CLOUD).result.outliers,
+        mesh_size=(mesh.vertices, mesh.faces),
         wanted=spacing,
-        noise=_noise(project),
-        settings={name: stage.key["settings"] for name, stage in stages.items()},
-        versions=scan["versions"],
-        durations={name: stage.seconds() for name, stage in stages.items()},
+        noise=0.0 if background is None else background.noise,
+        settings={word: stage.record.key.settings for word, stage in stages.items()},
+        versions=scan.versions,
+        durations={word: stage.record.seconds for word, stage in stages.items()},
         pictures=_pictures(project),
     )
     profiles = kept_profiles(project, summary.rig.lasers[summary.laser].axis)
     return with_coverage(summary, profiles, frames=frames, trajectory=trajectory)
 
 
-def _noise(project: Project) -> float:
-    """Give the noise of a pixel that the extractor has learnt [grey levels]; 0 if it kept none."""
-    file = project.finished("extract").folder / "background.json"
-    return float(load_json(file).get("noise", 0.0)) if file.exists() else 0.0
-
-
 def _pictures(project: Project) -> list[Shown]:
     views = [
         Shown(f"../view/{name}.png", name.replace("-", ", coloured by "))
-        for name in project.finished("view").counts()["pictures"]
+        for name in project.finished(VIEW).result.pictures
     ]
     found = [
-        Shown(f"../extract/overlay/{file.name}", _caption(file.stem), is_frame=True)
-        for file in project.find_overlays()
+        Shown(f"../extract/overlay/{name}.png", _caption(name), is_frame=True)
+        for name in project.find_overlays()
     ]
     return views + found
 

@@ -18,10 +18,9 @@ from ..types.cloud import PointCloud
 from ..types.profile import Profile
 from ..types.rig import Rig
 from ..types.trajectory import Trajectory
-from .common_part import moving_rig
 from .merged import is_merged
 from .merged_errors import trace_alignment
-from .scan_rig import load_scan_rig
+from .scan_rig import load_scan_rig, moving_rig
 
 _FEWEST = 10
 """Points of a selection below which a measure says nothing."""

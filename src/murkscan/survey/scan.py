@@ -5,14 +5,13 @@ from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
 
 from ..capture import AbstractRecording
 from ..extract import AbstractExtractor, Murk
 from ..io.rig_toml import as_tables
 from ..mesh import AbstractMesher, GridMesh
 from ..motion import AbstractMotion
-from ..project import Project
+from ..project import Project, RecordingRecord, ScanRecord, describe
 from ..triangulate import AbstractTriangulation, RaySheet
 from ..types.rig import Rig
 from .cloud import build_cloud
@@ -20,10 +19,9 @@ from .extract import check_recording, extract_recording
 from .merged import require_recording
 from .mesh import build_mesh
 from .motion import check_motion, follow_motion
-from .origin import tell_origin, when_written
+from .origin import read_calibration, when_written
 from .progress import Progress, silent
 from .report import write_report
-from .settings import describe
 from .triangulate import triangulate_stripes
 from .view import draw_views
 
@@ -75,79 +73,71 @@ def scan(
     mesher = mesher or GridMesh()
     mesher.check_available()
     check_motion(recording, motion)
+    check_recording(recording, rig, laser)
     settings = {"extractor": extractor, "method": method, "motion": motion, "mesher": mesher}
-    project = begin_scan(
-        out,
-        recording,
-        rig,
-        laser=laser,
-        settings=settings,
-        rig_file=rig_file,
-        command=command,
-    )
-    extract_recording(project, recording, rig, extractor, laser=laser, progress=progress)
-    triangulate_stripes(project, rig, method, progress=progress)
-    follow_motion(project, motion)
-    build_cloud(project, rig, frames=frames, progress=progress)
-    build_mesh(project, mesher, progress=progress)
-    draw_views(project, progress=progress)
-    write_report(project, progress=progress)
+    project = Project(Path(out), tuple(command))
+    project.check_writable()
+    with project.hold():
+        begin_scan(project, recording, rig, laser=laser, settings=settings, rig_file=rig_file)
+        extract_recording(project, recording, rig, extractor, laser=laser, progress=progress)
+        triangulate_stripes(project, rig, method, progress=progress)
+        follow_motion(project, motion)
+        build_cloud(project, rig, frames=frames, progress=progress)
+        build_mesh(project, mesher, progress=progress)
+        draw_views(project, progress=progress)
+        write_report(project, progress=progress)
     return project
 
 
 def begin_scan(
-    out: Path | str,
+    project: Project,
     recording: AbstractRecording,
     rig: Rig,
     *,
     laser: int,
     settings: Mapping[str, object],
     rig_file: Path | None = None,
-    command: Sequence[str] = (),
-) -> Project:
-    """Make a project, or open the one that is there, and write down what it scans with what.
+) -> None:
+    """Write down what a project scans with what.
 
     Args:
-        out: The folder.
+        project: The project, of a new folder or of an earlier scan.
         recording: The pictures.
         rig: The rig that recorded them.
         laser: Number of the laser whose stripe is followed.
         settings: The Choice of each kind that was made.
         rig_file: The file of the rig, for what the report says of its calibration.
-        command: The words that were typed after `murkscan`, for the report.
 
     Raises:
-        InputError: The folder holds other things, or the recording is not of this rig.
+        InputError: The folder holds other things or another run is at work in it, or the recording
+            is not of this rig.
     """
     check_recording(recording, rig, laser)
-    project = Project(Path(out))
     project.check_writable()
-    require_recording(project)
-    project.save_scan(
-        {
-            "format": 1,
-            "versions": _versions(),
-            "started": datetime.now(UTC).isoformat(timespec="seconds"),
-            "recording": {
-                "path": str(recording.path),
-                "fingerprint": recording.fingerprint(),
-                "size": list(recording.size),
-                "is_timed": recording.is_timed,
-                "fields_per_picture": recording.fields_per_picture,
-                "written": when_written(recording.path),
-            },
-            "rig": as_tables(rig),
-            **tell_origin(rig_file, command),
-            "settings": {
-                "laser": laser,
-                **{name: describe(choice) for name, choice in settings.items()},
-            },
-        }
+    chosen = {name: describe(choice) for name, choice in settings.items()}
+    record = ScanRecord(
+        versions=_versions(),
+        started=datetime.now(UTC),
+        recording=RecordingRecord(
+            path=str(recording.path),
+            fingerprint=recording.fingerprint(),
+            size=recording.size,
+            is_timed=recording.is_timed,
+            fields_per_picture=recording.fields_per_picture,
+            written=when_written(recording.path),
+        ),
+        rig=as_tables(rig),
+        command=tuple(project.command),
+        rig_file="" if rig_file is None else str(rig_file),
+        calibration=None if rig_file is None else read_calibration(rig_file),
+        settings={"laser": laser, **chosen},
     )
-    return project
+    with project.hold():
+        require_recording(project)
+        project.save_scan(record)
 
 
-def _versions() -> dict[str, Any]:
+def _versions() -> dict[str, str]:
     libraries = ("numpy", "scipy", "numba", "opencv-contrib-python-headless", "av", "pyarrow")
     return {
         "murkscan": version("murkscan"),

@@ -3,10 +3,9 @@
 import numpy as np
 
 from ..optics.uncertainty import common_shifts
-from ..project import Project
+from ..project import EXTRACT, Project
 from ..view import ShiftField, choose_fairly, fit_shift_field
-from .common_part import moving_rig
-from .scan_rig import load_scan_rig
+from .scan_rig import load_scan_rig, moving_rig
 
 _TRACED = 3000
 """Points that stand for all: the shifts vary slowly."""
@@ -24,7 +23,7 @@ def trace_shift_field(project: Project) -> ShiftField | None:
         return None
     profile = project.load_profile()
     some = profile[choose_fairly(len(profile), _TRACED)]
-    laser = project.finished("extract").key["settings"]["laser"]
+    laser = project.finished(EXTRACT).result.laser
     shifts = common_shifts(some.pixels, rig, laser)
     if rig.vehicle_from_camera is not None:
         shifts = rig.vehicle_from_camera.rotation.T @ shifts

@@ -1,18 +1,18 @@
 """What the page shows of a scan, from what its stages have left."""
 
-import hashlib
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import InputError
+from ..io.checksum import mark_file
 from ..io.deviation_files import load_deviation_ply
 from ..io.json_files import load_json
-from ..project import Project
+from ..project import CLOUD, MESH, Project
 from ..types.cloud import PointCloud
 from ..view import Layer, Model, choose_fairly, model_of_scan
 from .measured import measure_file
-from .merged import is_merged, load_moments, load_way
+from .merged import load_moments, load_way
 from .origin import name_recording
 from .shift_field import trace_shift_field
 
@@ -32,10 +32,10 @@ def load_model(project: Project, *, most: int, deviation: str = DEVIATION) -> Mo
         MissingResult: A stage has not been finished.
         FormatError: A file is damaged.
     """
-    total = project.finished("cloud").counts()["points"]
+    total = project.finished(CLOUD).result.points
     if total == 0:
         return None
-    is_scan = not is_merged(project)
+    recording = project.load_scan().recording
     model = model_of_scan(
         title_of(project),
         choose_points(project, most),
@@ -43,8 +43,8 @@ def load_model(project: Project, *, most: int, deviation: str = DEVIATION) -> Mo
         mesh=project.load_mesh() if has_surface(project) else None,
         trajectory=load_way(project),
         frames=load_moments(project),
-        is_timed=is_scan and project.load_scan()["recording"]["is_timed"],
-        shift_field=trace_shift_field(project) if is_scan else None,
+        is_timed=recording is not None and recording.is_timed,
+        shift_field=None if recording is None else trace_shift_field(project),
         most=most,
     )
     if deviation_digest(project, deviation) is None:
@@ -63,13 +63,15 @@ def folder_of(project: Project) -> str:
 
 def has_surface(project: Project) -> bool:
     """Tell whether the finished mesh stage has found a surface."""
-    return bool(project.finished("mesh").counts()["faces"] > 0)
+    return project.finished(MESH).result.faces > 0
 
 
 def title_of(project: Project) -> str:
     """Name a scan by its recording, and a merged cloud by its folder."""
-    path = project.load_scan()["recording"].get("path")
-    return project.root.resolve().name if path is None else name_recording(Path(path))
+    recording = project.load_scan().recording
+    return (
+        project.root.resolve().name if recording is None else name_recording(Path(recording.path))
+    )
 
 
 def deviation_digest(project: Project, name: str) -> str | None:
@@ -84,9 +86,9 @@ def deviation_digest(project: Project, name: str) -> str | None:
     is_there = file.exists() and measure_file(project, name, "ply").exists()
     if (
         is_there
-        and load_json(file).get("inputs", {}).get("cloud") == project.finished("cloud").digest
+        and load_json(file).get("inputs", {}).get("cloud") == project.finished(CLOUD).digest
     ):
-        return hashlib.sha256(file.read_bytes()).hexdigest()[:16]
+        return mark_file(file).blake2b
     if name != DEVIATION:
         raise InputError(
             f"{file} is no deviation of the present cloud; run `murkscan measure {project.root} "
@@ -97,7 +99,7 @@ def deviation_digest(project: Project, name: str) -> str | None:
 
 def choose_points(project: Project, most: int) -> PointCloud:
     """Load a fair choice of a cloud that may be larger than memory."""
-    total = project.finished("cloud").counts()["points"]
+    total = project.finished(CLOUD).result.points
     chosen, start, parts = choose_fairly(total, most), 0, []
     for block in project.iterate_cloud():
         low, high = np.searchsorted(chosen, [start, start + len(block)])

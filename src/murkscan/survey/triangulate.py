@@ -1,16 +1,14 @@
 """Turn all stripes of a scan into profiles, one part after another."""
 
 import os
-import time
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any
 
 from ..errors import Degenerate
-from ..project import Project
+from ..project import EXTRACT, TRIANGULATE, Project, TriangulateResult, describe
 from ..triangulate import AbstractTriangulation, triangulate
 from ..types.rig import Rig
 from .progress import Progress, silent
-from .settings import describe
+from .stage_runner import run_stage
 
 
 def triangulate_stripes(
@@ -19,48 +17,57 @@ def triangulate_stripes(
     method: AbstractTriangulation,
     *,
     progress: Progress = silent,
-) -> dict[str, Any]:
+) -> TriangulateResult:
     """Run the triangulate stage; parts that are there already are kept.
-
-    Returns:
-        Counts: points, and dropped, the centres whose ray does not meet the sheet.
 
     Raises:
         MissingResult: The extract stage has not been finished.
         Degenerate: No centre sees the sheet.
         DeviceError: The disk is full.
     """
-    source = project.finished("extract")
+    source = project.finished(EXTRACT)
     stage = project.stage(
-        "triangulate",
+        TRIANGULATE,
         settings={"method": describe(method)},
         inputs={"extract": source.digest, "rig": describe(rig)},
     )
-    if (result := stage.result()) is not None:
-        return result
-    since = time.monotonic()
-    stage.begin()
-    parts = [part for part, _ in project.load_stripe_notes()]
 
-    points = 0
+    def make(parts: list[int]) -> TriangulateResult:
+        points = _triangulate_parts(project, rig, method, parts, progress)
+        if source.result.points and not points:
+            raise Degenerate(
+                f"None of the {source.result.points} stripe centres sees the laser's sheet in "
+                "front of the camera: check the sign of baseline_mm or distance_mm, and the angle, "
+                "in the rig file."
+            )
+        return TriangulateResult(points, dropped=source.result.points - points)
+
+    def prepare() -> list[int]:
+        return [part for part, _ in project.load_stripe_parts()]
+
+    return run_stage(project, stage, make, prepare=prepare, progress=progress)
+
+
+def _triangulate_parts(
+    project: Project,
+    rig: Rig,
+    method: AbstractTriangulation,
+    parts: list[int],
+    progress: Progress,
+) -> int:
+    """Make the parts that are missing, and count the points of all."""
+    there = project.find_profile_parts()
 
     def run(part: int) -> int:
-        profile = project.load_profile_part(part)
-        if profile is None:
-            profile = triangulate(project.load_stripe_part(part), rig, method)
-            project.save_profile_part(part, profile)
+        if part in there:
+            return len(project.load_profile_part(part))
+        profile = triangulate(project.load_stripe_part(part), rig, method)
+        project.save_profile_part(part, profile)
         return len(profile)
 
+    points = 0
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         for done, count in enumerate(pool.map(run, parts)):
             points += count
             progress("triangulate", done + 1, len(parts))
-    centres = source.counts()["points"]
-    if centres and not points:
-        raise Degenerate(
-            f"None of the {centres} stripe centres sees the laser's sheet in front of the camera: "
-            "check the sign of baseline_mm or distance_mm, and the angle, in the rig file."
-        )
-    result = {"points": points, "dropped": centres - points}
-    stage.finish(result, since=since)
-    return result
+    return points

@@ -1,17 +1,15 @@
 """Show a scan's surface: pictures for print, and a page on which it is turned and measured."""
 
-import time
-from typing import Any
-
 from ..errors import InputError
 from ..page import Gallery, Note, Picture, Section, render_page
-from ..project import Project
+from ..project import MESH, VIEW, Project, ViewResult
 from ..types.mesh import Mesh
 from ..view import MOST, PICTURES, draw_pictures, render_viewer
 from .compared import Compared, compare_models
 from .merged import load_way
 from .progress import Progress, silent
 from .shown import DEVIATION, deviation_digest, has_surface, load_model, title_of
+from .stage_runner import run_stage
 
 
 def draw_views(
@@ -22,7 +20,7 @@ def draw_views(
     deviation: str = DEVIATION,
     most: int = MOST,
     progress: Progress = silent,
-) -> dict[str, Any]:
+) -> ViewResult:
     """Run the view stage: nine pictures, the page that shows them, and the page with the model.
 
     Args:
@@ -35,9 +33,7 @@ def draw_views(
         progress: Told how many pictures are drawn.
 
     Returns:
-        The names of the pictures, in the order to show them, none for a scan without a surface;
-        how many points the page shows; of two scans in words how the other one was moved, and the
-        same in numbers.
+        What was drawn: no pictures for a scan without a surface.
 
     Raises:
         MissingResult: The mesh stage has not been finished.
@@ -47,32 +43,28 @@ def draw_views(
     """
     if most < 1:
         raise InputError(f"The page must hold one point or more, got {most}.")
-    inputs = {"mesh": project.finished("mesh").digest}
-    if (digest := deviation_digest(project, deviation)) is not None:
-        inputs["deviation"] = digest
+    inputs = {"mesh": project.finished(MESH).digest}
+    if (measured := deviation_digest(project, deviation)) is not None:
+        inputs["deviation"] = measured
     if other is not None:
-        inputs["other"] = f"{other.root} {other.finished('mesh').digest}"
+        inputs["other"] = f"{other.root} {other.finished(MESH).digest}"
     settings = {"most": most, "align": align and other is not None}
-    stage = project.stage("view", settings=settings, inputs=inputs)
-    if (result := stage.result()) is not None:
-        return result
-    since = time.monotonic()
-    # Pictures and page of before stay until all that the new ones need has been read.
-    surface = project.load_mesh() if has_surface(project) else None
-    shown = _load(project, other, align=align, deviation=deviation, most=most)
-    stage.begin()
-    names = [] if surface is None else _draw(project, surface, progress)
-    title = title_of(project)
-    project.save_pictures_page(_pictures_page(title, names))
-    project.save_view_page(_page(title, shown))
-    result = {
-        "pictures": names,
-        "points": sum(model.num_measured for model in shown.models),
-        "relation": shown.relation,
-        "alignment": shown.alignment,
-    }
-    stage.finish(result, since=since)
-    return result
+    stage = project.stage(VIEW, settings=settings, inputs=inputs)
+
+    def prepare() -> tuple[Mesh | None, Compared]:
+        surface = project.load_mesh() if has_surface(project) else None
+        return surface, _load(project, other, align=align, deviation=deviation, most=most)
+
+    def make(prepared: tuple[Mesh | None, Compared]) -> ViewResult:
+        surface, shown = prepared
+        names = [] if surface is None else _draw(project, surface, progress)
+        title = title_of(project)
+        project.save_pictures_page(_pictures_page(title, names))
+        project.save_view_page(_page(title, shown))
+        points = sum(model.num_measured for model in shown.models)
+        return ViewResult(tuple(names), points, shown.relation, shown.alignment)
+
+    return run_stage(project, stage, make, prepare=prepare, progress=progress)
 
 
 def _load(

@@ -1,6 +1,6 @@
 """What a recording looks like where the stripe is not, and how the stripe stands out of it."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 
 @dataclass(frozen=True)
@@ -48,10 +48,10 @@ class StripeShape:
 class Attenuation:
     """How murky the water was."""
 
-    effective: float
+    effective: float = field(metadata={"unit": "per_m"})
     """What the sheet's own glow fades by [1/m]."""
-    low: float
-    high: float
+    low: float = field(metadata={"unit": "per_m"})
+    high: float = field(metadata={"unit": "per_m"})
     """Ends of an interval that holds the water's beam attenuation c [1/m]."""
 
     @property

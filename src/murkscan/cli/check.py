@@ -1,0 +1,34 @@
+"""murkscan check: is everything still as it was written?"""
+
+from pathlib import Path
+
+from ..errors import FormatError
+from .progress import progress_bars
+
+
+def check(out: Path) -> None:
+    """Compare every file of a scan with the checksum that it was written with.
+
+    Parameters
+    ----------
+    out
+        Folder of the scan, or of a merged cloud.
+    """
+    from ..project import Project
+    from ..survey.check import check_project
+
+    with progress_bars() as progress:
+        checks = check_project(Project(out), progress=progress)
+    for one in checks:
+        counts = f"{one.num_whole:,} files as they were written"
+        if one.foreign:
+            counts += f", {len(one.foreign):,} that are not murkscan's"
+        print(f"{one.word:<12}{counts}{'; ' + one.state if one.state else ''}")
+    spoilt = [name for one in checks for name in (*one.changed, *one.missing)]
+    for name in spoilt:
+        print(f"  {'changed' if (out / name).exists() else 'missing'}: {name}")
+    if spoilt:
+        raise FormatError(
+            f"{len(spoilt):,} files of {out} are not as they were written. Delete those that have "
+            "changed and run the same commands again: what is missing is made anew."
+        )

@@ -1,0 +1,33 @@
+"""A scan's folder: its stages, what each of them made and said, and whether it is still so."""
+
+from .describe import describe as describe
+from .describe import digest as digest
+from .folder import Project as Project
+from .kinds import CLOUD as CLOUD
+from .kinds import EXTRACT as EXTRACT
+from .kinds import MESH as MESH
+from .kinds import MOTION as MOTION
+from .kinds import REPORT as REPORT
+from .kinds import STAGES as STAGES
+from .kinds import TRIANGULATE as TRIANGULATE
+from .kinds import VIEW as VIEW
+from .kinds import Kind as Kind
+from .ledger import enter_all as enter_all
+from .lock import hold as hold
+from .results import AlignmentResult as AlignmentResult
+from .results import CloudResult as CloudResult
+from .results import ExtractResult as ExtractResult
+from .results import MeshResult as MeshResult
+from .results import MotionResult as MotionResult
+from .results import OpenDirectionResult as OpenDirectionResult
+from .results import PartNote as PartNote
+from .results import PassResult as PassResult
+from .results import RecordingRecord as RecordingRecord
+from .results import ReportResult as ReportResult
+from .results import ScanRecord as ScanRecord
+from .results import TriangulateResult as TriangulateResult
+from .results import ViewResult as ViewResult
+from .stage import Finished as Finished
+from .stage import Key as Key
+from .stage import Stage as Stage
+from .stage import read_record as read_record

@@ -1,0 +1,57 @@
+"""The files of one stage: entered while they are made, and checked when they are read."""
+
+from collections.abc import Mapping
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..errors import FormatError, MissingResult
+from ..io.checksum import Mark, mark_file
+from .ledger import Marks, entering, is_whole, read_ledger, strike
+from .stage import read_record
+
+
+@dataclass(frozen=True)
+class StageFiles:
+    """What a stage has made in its folder, whether it is finished or not."""
+
+    folder: Path
+
+    def making(self, name: str) -> AbstractContextManager[Path]:
+        """Enter a file into the ledger of a stage that has begun; gives the path to make it at."""
+        return entering(self.folder, name)
+
+    def remove(self, name: str) -> None:
+        """Remove a file that is not to stay."""
+        strike(self.folder, name)
+
+    def made(self, below: str = "") -> Mapping[str, Mark]:
+        """Give the files in a subfolder that are whole, as far as their size tells, by name."""
+        return {
+            name: mark
+            for name, mark in sorted(self._marks().items())
+            if name.startswith(below) and mark is not None and is_whole(self.folder / name, mark)
+        }
+
+    def checked(self, name: str) -> Path:
+        """Give the path of a file, after comparing it with its checksum.
+
+        Raises:
+            MissingResult: It is not there.
+            FormatError: It is not as it was written.
+        """
+        mark, path = self._marks().get(name), self.folder / name
+        if mark is None or not path.is_file():
+            raise MissingResult(f"{path} is missing; run `murkscan scan` again, which makes it.")
+        if mark_file(path) != mark:
+            raise FormatError(
+                f"{path} is not as it was written: its checksum is another. Delete it and run "
+                "`murkscan scan` again, which makes it anew."
+            )
+        return path
+
+    def _marks(self) -> Marks:
+        record = read_record(self.folder)
+        if record is not None and record.result is not None:
+            return record.files
+        return read_ledger(self.folder)

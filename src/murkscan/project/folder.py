@@ -1,0 +1,322 @@
+"""A scan's folder: the one place that knows where each value lies."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from ..errors import InputError, MissingResult, NotEnoughData
+from ..io.images import write_image
+from ..io.json_files import save_json
+from ..io.mesh_files import load_mesh, save_mesh
+from ..io.mlp import frame_name, save_project, split_frames
+from ..io.parquet import load_profile, load_stripe, save_profile, save_stripe
+from ..io.ply import iterate_cloud, load_cloud, save_cloud, writing_cloud
+from ..io.poses import load_poses, save_poses
+from ..io.text import save_text
+from ..io.values import from_plain, load_value, save_value
+from ..types.arrays import ColourImage
+from ..types.background import Background
+from ..types.cloud import PointCloud
+from ..types.frame_times import FrameTimes
+from ..types.mesh import Mesh
+from ..types.profile import Profile
+from ..types.stripe import Stripe
+from ..types.trajectory import Trajectory
+from .files import StageFiles
+from .kinds import CLOUD, EXTRACT, MESH, MOTION, REPORT, STAGES, TRIANGULATE, VIEW, Kind
+from .lock import hold
+from .results import PartNote, ScanRecord
+from .stage import Finished, Key, Stage, read_record
+
+R = TypeVar("R")
+
+
+@dataclass(frozen=True)
+class Project:
+    """The folder OUT of a scan. Each value is saved and loaded here, and nowhere else."""
+
+    root: Path
+    command: Sequence[str] = ()
+    """The words that were typed after `murkscan`; each stage that is made keeps them."""
+
+    def __post_init__(self) -> None:
+        """Take a text for a path."""
+        object.__setattr__(self, "root", Path(self.root))
+
+    def hold(self) -> AbstractContextManager[None]:
+        """Keep the folder for one's own while something is made in it; see `lock.hold`."""
+        return hold(self.root, self.command)
+
+    def save_scan(self, record: ScanRecord) -> None:
+        """Write scan.json."""
+        save_value(self.root / "scan.json", record)
+
+    def load_scan(self) -> ScanRecord:
+        """Read scan.json.
+
+        Raises:
+            MissingResult: The folder holds no scan.
+            FormatError: It is damaged.
+        """
+        if not (self.root / "scan.json").exists():
+            raise MissingResult(
+                f"{self.root} holds no scan; run `murkscan scan` or `murkscan extract` into it "
+                "first."
+            )
+        return load_value(self.root / "scan.json", ScanRecord)
+
+    def check_writable(self) -> None:
+        """Refuse a folder that holds something other than a scan, so that nothing is mixed.
+
+        Raises:
+            InputError: It is a file, or a folder with other things in it.
+        """
+        if self.root.is_file():
+            raise InputError(f"{self.root} is a file; give a folder with --out.")
+        is_scan = (self.root / "scan.json").exists()
+        # A hidden file is what a run left that was killed while it wrote its first one.
+        others = [file for file in self.root.glob("*") if not file.name.startswith(".")]
+        if others and not is_scan:
+            raise InputError(f"{self.root} holds other files; give a new folder with --out.")
+
+    def stage(
+        self, kind: Kind[R], *, settings: Mapping[str, Any], inputs: Mapping[str, Any]
+    ) -> Stage[R]:
+        """Give a stage's folder, to be made with these settings and inputs."""
+        key = Key(kind.meaning, settings, inputs)
+        return Stage(self.root / kind.word, kind, key, tuple(self.command))
+
+    def finished(self, kind: Kind[R]) -> Finished[R]:
+        """Give a stage as it was finished last.
+
+        Raises:
+            MissingResult: It has not been run, not to its end, or a stage before it has been run
+                anew since.
+            FormatError: What it said is damaged.
+        """
+        folder, word = self.root / kind.word, kind.word
+        record = read_record(folder)
+        if record is None or record.result is None:
+            raise MissingResult(
+                f"{self.root} has no finished {word} stage; run `murkscan {word}` or "
+                "`murkscan scan` first."
+            )
+        for source in STAGES:
+            digest = record.key.inputs.get(source.word)
+            if digest is not None and self.finished(source).digest != digest:
+                raise MissingResult(
+                    f"The {word} stage of {self.root} is older than its {source.word} stage; run "
+                    f"`murkscan {word}` or `murkscan scan` again."
+                )
+        result = from_plain(kind.result, record.result, name=str(folder / "stage.json"))
+        return Finished(folder, result, record)
+
+    def load_stripe_parts(self) -> Iterator[tuple[int, PartNote]]:
+        """Read the number and the note of each part that extract has made so far, in order."""
+        files = self._files(EXTRACT)
+        stripes = files.made("stripes/")
+        for name in files.made("frames/"):
+            part = _part_of(name)
+            if _stripe_name(part) in stripes:
+                yield part, load_value(files.checked(name), PartNote)
+
+    def save_stripe_part(self, part: int, stripe: Stripe, note: PartNote) -> None:
+        """Write one part of extract, and last a note on the frames that it covers."""
+        with self._files(EXTRACT).making(_stripe_name(part)) as path:
+            save_stripe(path, stripe)
+        with self._files(EXTRACT).making(_note_name(part)) as path:
+            save_value(path, note)
+
+    def discard_stripe_part(self, part: int) -> None:
+        """Take the note of one part away, so that it counts as not made."""
+        self._files(EXTRACT).remove(_note_name(part))
+
+    def load_stripe_part(self, part: int) -> Stripe:
+        """Read the stripes of one part."""
+        return load_stripe(self._files(EXTRACT).checked(_stripe_name(part)))
+
+    def load_frame_times(self) -> FrameTimes:
+        """Read which frames a finished extract has seen, with or without a stripe."""
+        self.finished(EXTRACT)
+        notes = [note for _, note in self.load_stripe_parts()]
+        frames = [index for note in notes for index in note.frames]
+        times = [time for note in notes for time in note.times]
+        return FrameTimes(np.array(frames, np.uint32), np.array(times, float))
+
+    def load_stripe(self) -> Stripe:
+        """Read all stripes of a finished extract, in order of frames."""
+        self.finished(EXTRACT)
+        parts = [self.load_stripe_part(part) for part, _ in self.load_stripe_parts()]
+        return Stripe.concatenate(parts)
+
+    def find_profile_parts(self) -> set[int]:
+        """Number the parts that triangulate has made so far."""
+        return {_part_of(name) for name in self._files(TRIANGULATE).made("profiles/")}
+
+    def save_profile_part(self, part: int, profile: Profile) -> None:
+        """Write one part of triangulate."""
+        with self._files(TRIANGULATE).making(_profile_name(part)) as path:
+            save_profile(path, profile)
+
+    def load_profile_part(self, part: int) -> Profile:
+        """Read one part of triangulate."""
+        return load_profile(self._files(TRIANGULATE).checked(_profile_name(part)))
+
+    def load_profile_parts(self) -> Iterator[Profile]:
+        """Read the profiles of a finished triangulate, part by part in order of frames."""
+        self.finished(TRIANGULATE)
+        for part in sorted(self.find_profile_parts()):
+            yield self.load_profile_part(part)
+
+    def load_placed_parts(self) -> Iterator[Profile]:
+        """Read the profiles of a finished triangulate as far as a finished motion has their poses.
+
+        Part by part in order of frames, as `load_profile_parts`.
+        """
+        trajectory = self.load_trajectory()
+        for part in self.load_profile_parts():
+            yield part[trajectory.has(part.time)]
+
+    def load_placed_times(self) -> FrameTimes:
+        """Read which frames have a pose, with or without a stripe."""
+        frames, trajectory = self.load_frame_times(), self.load_trajectory()
+        placed = trajectory.has(frames.time)
+        return FrameTimes(frames.frame[placed], frames.time[placed])
+
+    def load_profile(self) -> Profile:
+        """Read all profiles of a finished triangulate, in order of frames."""
+        return Profile.concatenate(list(self.load_profile_parts()))
+
+    def save_background(self, background: Background) -> None:
+        """Write extract/background.json: what the extractor has learnt."""
+        with self._files(EXTRACT).making("background.json") as path:
+            save_value(path, background)
+
+    def load_background(self) -> Background | None:
+        """Read what the extractor has learnt; None where that has not been kept."""
+        if not self._files(EXTRACT).made("background.json"):
+            return None
+        return load_value(self._files(EXTRACT).checked("background.json"), Background)
+
+    def save_overlay(self, name: str, picture: ColourImage) -> None:
+        """Write one picture of what was found, extract/overlay/<name>.png."""
+        with self._files(EXTRACT).making(f"overlay/{name}.png") as path:
+            write_image(path, picture)
+
+    def remove_overlay(self, name: str) -> None:
+        """Remove one of them."""
+        self._files(EXTRACT).remove(f"overlay/{name}.png")
+
+    def find_overlays(self) -> list[str]:
+        """Name the pictures of what was found, in order of frames."""
+        return sorted(Path(name).stem for name in self._files(EXTRACT).made("overlay/"))
+
+    def save_trajectory(self, trajectory: Trajectory) -> None:
+        """Write motion/trajectory.csv."""
+        with self._files(MOTION).making("trajectory.csv") as path:
+            save_poses(path, trajectory)
+
+    def load_trajectory(self) -> Trajectory:
+        """Read the poses of a finished motion."""
+        self.finished(MOTION)
+        return load_poses(self._files(MOTION).checked("trajectory.csv"))
+
+    @contextmanager
+    def writing_cloud(self) -> Iterator[Callable[[PointCloud], None]]:
+        """Write cloud/cloud.ply block by block."""
+        with self._files(CLOUD).making("cloud.ply") as path, writing_cloud(path) as write:
+            yield write
+
+    @contextmanager
+    def writing_frames(self) -> Iterator[Callable[[PointCloud], None]]:
+        """Write one cloud a frame, cloud/frames/*.ply, and cloud/frames.mlp that opens them all.
+
+        The cloud comes in blocks; a frame lies in one of them.
+        """
+        paths: list[Path] = []
+
+        def write(cloud: PointCloud) -> None:
+            for frame, points in split_frames(cloud):
+                with self._files(CLOUD).making(frame_name(frame)) as path:
+                    save_cloud(path, points)
+                    paths.append(path)
+
+        yield write
+        with self._files(CLOUD).making("frames.mlp") as path:
+            save_project(path, paths)
+
+    def load_cloud(self) -> PointCloud:
+        """Read the cloud of a finished cloud stage."""
+        self.finished(CLOUD)
+        return load_cloud(self._files(CLOUD).checked("cloud.ply"))
+
+    def iterate_cloud(self) -> Iterator[PointCloud]:
+        """Read the cloud of a finished cloud stage, some points at a time."""
+        self.finished(CLOUD)
+        return iterate_cloud(self._files(CLOUD).checked("cloud.ply"))
+
+    def save_mesh(self, mesh: Mesh) -> None:
+        """Write mesh/mesh.ply, .stl and .glb."""
+        for suffix in ("ply", "stl", "glb"):
+            with self._files(MESH).making(f"mesh.{suffix}") as path:
+                save_mesh(path, mesh)
+
+    def load_mesh(self) -> Mesh:
+        """Read the mesh of a finished mesh stage.
+
+        Raises:
+            NotEnoughData: It has no triangles, and so no file.
+        """
+        if self.finished(MESH).result.faces == 0:
+            raise NotEnoughData(
+                f"The surface of {self.root} has no triangles: its cloud has no two neighbouring "
+                "profiles, or points too far apart. Scan more frames, or look at extract/overlay "
+                "to see what was found in them."
+            )
+        return load_mesh(self._files(MESH).checked("mesh.ply"))
+
+    def save_picture(self, name: str, picture: ColourImage) -> None:
+        """Write one picture of the surface, view/<name>.png."""
+        with self._files(VIEW).making(f"{name}.png") as path:
+            write_image(path, picture)
+
+    def save_view_page(self, page: str) -> None:
+        """Write view/index.html."""
+        self._save_page(VIEW, "index.html", page)
+
+    def save_pictures_page(self, page: str) -> None:
+        """Write view/pictures.html."""
+        self._save_page(VIEW, "pictures.html", page)
+
+    def save_report(self, content: dict[str, Any], page: str) -> None:
+        """Write report/report.json and report/index.html."""
+        with self._files(REPORT).making("report.json") as path:
+            save_json(path, content)
+        self._save_page(REPORT, "index.html", page)
+
+    def _save_page(self, kind: Kind[Any], name: str, page: str) -> None:
+        with self._files(kind).making(name) as path:
+            save_text(path, page)
+
+    def _files(self, kind: Kind[Any]) -> StageFiles:
+        return StageFiles(self.root / kind.word)
+
+
+def _stripe_name(part: int) -> str:
+    return f"stripes/{part:06d}.parquet"
+
+
+def _note_name(part: int) -> str:
+    return f"frames/{part:06d}.json"
+
+
+def _profile_name(part: int) -> str:
+    return f"profiles/{part:06d}.parquet"
+
+
+def _part_of(name: str) -> int:
+    return int(Path(name).stem)

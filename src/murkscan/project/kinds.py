@@ -1,0 +1,41 @@
+"""The stages by name: what each one says, and which meaning its data have."""
+
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
+
+from .results import (
+    CloudResult,
+    ExtractResult,
+    MeshResult,
+    MotionResult,
+    ReportResult,
+    TriangulateResult,
+    ViewResult,
+)
+
+R = TypeVar("R")
+
+
+@dataclass(frozen=True)
+class Kind(Generic[R]):
+    """A stage."""
+
+    word: str
+    """Its name, which its folder and its command have, too."""
+    result: type[R]
+    """What it says when it is finished."""
+    meaning: int
+    """Meaning of its data. Whoever changes what the stage makes of the same inputs and settings
+    raises this number: folders of earlier versions are then made anew."""
+
+
+EXTRACT = Kind("extract", ExtractResult, meaning=1)
+TRIANGULATE = Kind("triangulate", TriangulateResult, meaning=1)
+MOTION = Kind("motion", MotionResult, meaning=1)
+CLOUD = Kind("cloud", CloudResult, meaning=1)
+MESH = Kind("mesh", MeshResult, meaning=1)
+VIEW = Kind("view", ViewResult, meaning=1)
+REPORT = Kind("report", ReportResult, meaning=1)
+
+STAGES: tuple[Kind[Any], ...] = (EXTRACT, TRIANGULATE, MOTION, CLOUD, MESH, VIEW, REPORT)
+"""The stages of a scan, in order."""

@@ -1,0 +1,206 @@
+"""What each stage says when it is finished."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import datetime
+from typing import Any
+
+from ..types.background import Attenuation
+
+Skipped = tuple[int, int, str]
+"""First frame that could not be read, how many, and why."""
+
+
+@dataclass(frozen=True)
+class ExtractResult:
+    """What was found in the pictures."""
+
+    laser: int
+    """Number of the laser in the rig whose stripe was looked for."""
+    frames: int
+    """Frames that were read."""
+    skipped: int
+    """Frames that could not be read."""
+    frames_without_stripe: int
+    points: int
+    """Stripe centres."""
+    skips: tuple[Skipped, ...] = ()
+    remarks: tuple[str, ...] = ()
+    """What is odd about the recording, with its cure; sentences for the user."""
+    attenuation: Attenuation | None = None
+    """How murky the water was, where the glow tells."""
+
+
+@dataclass(frozen=True)
+class TriangulateResult:
+    """What became of the stripe centres."""
+
+    points: int
+    dropped: int
+    """Centres whose ray does not meet the sheet in front of the camera."""
+
+
+@dataclass(frozen=True)
+class MotionResult:
+    """How the camera moved."""
+
+    poses: int
+    frames_without_pose: int = 0
+    """Frames of which the motion says nothing; they give no points."""
+    remarks: tuple[str, ...] = ()
+    """What was odd, such as the frames without a pose; sentences for the user."""
+    duration: float = field(default=0.0, metadata={"unit": "s"})
+    """From the first frame to the last [s]."""
+    length: float = field(default=0.0, metadata={"unit": "m"})
+    """Length of the camera's path [m]."""
+    carries_mount: bool = False
+    """Whether the poses came through the rig's mount, whose errors they then share."""
+    start: float = field(default=0.0, metadata={"unit": "s"})
+    """What the log's clock showed when recording time was 0 [s]."""
+
+
+@dataclass(frozen=True)
+class OpenDirectionResult:
+    """A motion that an alignment left as it was."""
+
+    words: str
+    axis: tuple[float, ...]
+    through: tuple[float, ...] = field(metadata={"unit": "m"})
+
+
+@dataclass(frozen=True)
+class AlignmentResult:
+    """How one cloud was laid on another."""
+
+    rotation: tuple[tuple[float, ...], ...]
+    """Rotation matrix target_from_source."""
+    translation: tuple[float, ...] = field(metadata={"unit": "m"})
+    centre: tuple[float, ...] = field(metadata={"unit": "m"})
+    """Middle of the overlap, about which it is turned [m]."""
+    shift_of_centre: tuple[float, ...] = field(metadata={"unit": "m"})
+    turn: tuple[float, ...] = field(metadata={"unit": "rad"})
+    """Rotation vector [rad]."""
+    covariance_of_turn_and_shift: tuple[tuple[float, ...], ...]
+    """[rad², rad·m, m²]."""
+    open: tuple[OpenDirectionResult, ...]
+    overlap: float
+    """Share of the source that was matched."""
+    matches: int
+    rms: float = field(metadata={"unit": "m"})
+    """Root mean square distance of the matches [m]."""
+
+
+@dataclass(frozen=True)
+class PassResult:
+    """What became of one pass of a merged cloud."""
+
+    path: str
+    frames: tuple[int, int]
+    """First and last of its frames, by the merged cloud's count."""
+    left_out: int
+    """Points that are not finite."""
+    words: str
+    """How it was moved, for people."""
+    alignment: AlignmentResult | None
+    """How it was laid on those before it; None: it stays where it was."""
+    laid_on: tuple[float, ...]
+    """Share of its matches in each pass that it was laid on."""
+
+
+@dataclass(frozen=True)
+class CloudResult:
+    """What the cloud holds."""
+
+    points: int
+    outliers: int
+    """Points that were taken out."""
+    outliers_by: Mapping[str, int] = field(default_factory=dict)
+    """How many of them for each cause."""
+    passes: tuple[PassResult, ...] = ()
+    """The scans that a merged cloud was made of."""
+
+
+@dataclass(frozen=True)
+class MeshResult:
+    """What the surface holds; what was not asked for is None."""
+
+    vertices: int
+    faces: int
+    holes_closed: int | None = None
+    holes_left: int | None = None
+    faces_filled: int | None = None
+    """Faces that close holes."""
+
+
+@dataclass(frozen=True)
+class ViewResult:
+    """What was drawn."""
+
+    pictures: tuple[str, ...]
+    """Names, in the order to show them."""
+    points: int
+    """Points that the page shows."""
+    relation: str = ""
+    """Of two scans, how the other one was moved, in a sentence."""
+    alignment: AlignmentResult | None = None
+    """The same in numbers."""
+
+
+@dataclass(frozen=True)
+class ReportResult:
+    """What the report tells in short."""
+
+    frames: int
+    skipped: int
+    frames_without_stripe: int
+    points: int
+
+
+@dataclass(frozen=True)
+class PartNote:
+    """The frames that one part of extract covers."""
+
+    frames: tuple[int, ...]
+    """Those that were read, by their index in the recording."""
+    times: tuple[float, ...]
+    """When each was taken [s]."""
+    points: tuple[int, ...]
+    """Stripe centres of each."""
+    skips: tuple[Skipped, ...]
+
+
+@dataclass(frozen=True)
+class RecordingRecord:
+    """What scan.json says of a recording."""
+
+    path: str
+    fingerprint: Any
+    """Changes with what the recording holds."""
+    size: tuple[int, int]
+    """Width and height of its pictures [px]."""
+    is_timed: bool
+    fields_per_picture: int
+    written: datetime | None = None
+    """When its last file was written."""
+
+
+@dataclass(frozen=True)
+class ScanRecord:
+    """scan.json: what was scanned, with what."""
+
+    versions: Mapping[str, str]
+    recording: RecordingRecord | None
+    """None for a cloud that was merged from other scans."""
+    rig: Mapping[str, Any]
+    """The tables of the rig file."""
+    format: int = 1
+    started: datetime | None = None
+    command: tuple[str, ...] = ()
+    """The words that were typed after `murkscan`."""
+    rig_file: str = ""
+    calibration: Mapping[str, Any] | None = None
+    """The record of the rig's calibration."""
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    """The Choice of each kind."""
+    merged: tuple[str, ...] | None = None
+    """The passes of a merged cloud."""

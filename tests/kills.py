@@ -1,0 +1,224 @@
+"""Jobs that are killed at a chosen moment and begun again, in processes of their own.
+
+Run as `python -m tests.kills FOLDER JOB MOMENT …`: makes what the job needs in FOLDER, and for each
+moment prints a line of JSON: what differs after the kill and a second run from a run that nothing
+disturbed, but for stated times. A moment is a number of a file operation, before which the process
+kills itself, or with a dot a number of seconds; `count` tells how many operations there are.
+"""
+
+import json
+import os
+import re
+import shutil
+import signal
+import sys
+import threading
+import traceback
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+FRAMES = 70
+"""Two parts."""
+SPEED = 0.1
+_CHANGES = ("os.rename", "os.remove", "os.mkdir", "os.rmdir", "os.truncate")
+
+
+def make_inputs(folder: Path) -> None:
+    """Simulate two small recordings of the same hull, and scan both."""
+    from murkscan.survey.simulate import simulate_recording
+
+    from .scenes import hull_scene, smaller
+
+    if (folder / "b").exists():
+        return
+    scene = smaller(hull_scene(num_frames=FRAMES), 3)
+    simulate_recording(scene, folder / "recording")
+    run_scan(folder, folder / "a")
+    shutil.copytree(folder / "a", folder / "b")
+
+
+def model(folder: Path, out: Path, speed: float) -> None:
+    """Run the stages up to the surface: those that come in parts."""
+    import murkscan as ms
+    from murkscan.survey.cloud import build_cloud
+    from murkscan.survey.extract import extract_recording
+    from murkscan.survey.mesh import build_mesh
+    from murkscan.survey.motion import follow_motion
+    from murkscan.survey.scan import begin_scan
+    from murkscan.survey.triangulate import triangulate_stripes
+
+    recording, rig = opened(folder)
+    project = ms.Project(out)
+    begin_scan(project, recording, rig, laser=0, settings={})
+    extract_recording(project, recording, rig, ms.GrayGravity())
+    triangulate_stripes(project, rig, ms.RaySheet())
+    follow_motion(project, ms.ConstantSpeed(speed, "y"))
+    build_cloud(project, rig)
+    build_mesh(project, ms.GridMesh())
+
+
+def opened(folder: Path) -> Any:
+    import murkscan as ms
+
+    rig = ms.load_rig(folder / "recording" / "rig.toml")
+    frames = folder / "recording" / "frames"
+    return ms.open_recording(frames, wavelength=rig.wavelength), rig
+
+
+def run_scan(folder: Path, out: Path) -> None:
+    """Scan into a new folder, to the report."""
+    import murkscan as ms
+
+    recording, rig = opened(folder)
+    motion = ms.ConstantSpeed(SPEED, "y")
+    ms.scan(recording, rig, motion, out=out, extractor=ms.GrayGravity())
+
+
+def run_model(folder: Path, out: Path) -> None:
+    """Make a surface in a new folder."""
+    model(folder, out, SPEED)
+
+
+def run_again(folder: Path, out: Path) -> None:
+    """Make it with another speed in a folder that holds a scan."""
+    if not out.exists():
+        shutil.copytree(folder / "a", out)
+    model(folder, out, 0.9 * SPEED)
+
+
+def run_pages(folder: Path, out: Path) -> None:
+    """Draw the pictures and write the pages of a scan anew."""
+    from murkscan.project import Project
+    from murkscan.survey.report import write_report
+    from murkscan.survey.view import draw_views
+
+    if not out.exists():
+        shutil.copytree(folder / "a", out)
+    draw_views(Project(out), most=1000)
+    write_report(Project(out))
+
+
+def run_merge(folder: Path, out: Path) -> None:
+    """Merge two scans."""
+    from murkscan.survey.merge import merge_passes
+
+    merge_passes([folder / "a", folder / "b"], out)
+
+
+def run_export(folder: Path, out: Path) -> None:
+    """Write a cloud in another format."""
+    from murkscan.project import Project
+    from murkscan.survey.export import export_cloud
+
+    export_cloud(Project(folder / "a"), out / "dive.laz")
+
+
+JOBS: dict[str, Callable[[Path, Path], None]] = {
+    "scan": run_scan,
+    "model": run_model,
+    "again": run_again,
+    "pages": run_pages,
+    "merge": run_merge,
+    "export": run_export,
+}
+
+
+def in_a_child(run: Callable[[], None]) -> int:
+    """Run in a process of its own, and give how it ended as a shell does."""
+    child = os.fork()
+    if child == 0:
+        try:
+            run()
+            os._exit(0)
+        except BaseException:
+            traceback.print_exc()
+            os._exit(1)
+    return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+
+
+def kill_before(operation: int, root: Path) -> list[int]:
+    """Kill this process before its n-th file operation below a folder; 0: only count."""
+    counted = [0]
+
+    def watch(event: str, arguments: tuple[object, ...]) -> None:
+        if event == "open":
+            path, _, flags = arguments
+            changes = isinstance(flags, int) and flags & (os.O_WRONLY | os.O_RDWR | os.O_CREAT)
+        else:
+            path, changes = (*arguments, None)[0], event in _CHANGES
+        if changes and isinstance(path, str | os.PathLike) and str(root) in str(path):
+            counted[0] += 1
+            if counted[0] == operation:
+                os.kill(os.getpid(), signal.SIGKILL)
+
+    sys.addaudithook(watch)
+    return counted
+
+
+def kill_after(seconds: float) -> None:
+    """Kill this process after a time."""
+    threading.Timer(seconds, os.kill, (os.getpid(), signal.SIGKILL)).start()
+
+
+def contents(root: Path) -> dict[str, object]:
+    """Read all that a folder holds, without the times that it states."""
+    return {
+        file.relative_to(root).as_posix(): _without_times(file)
+        for file in sorted(root.rglob("*"))
+        if file.is_file() and file.name != ".lock"
+    }
+
+
+def _without_times(file: Path) -> object:
+    if file.name == "stage.json":
+        note = json.loads(file.read_text("utf-8"))
+        # What the report says of the times stands in its checksums, too.
+        names = set(note["files"]) if file.parent.name == "report" else note["files"]
+        return {**note, "seconds": 0, "files": names}
+    if file.name == "scan.json":
+        return {**json.loads(file.read_text("utf-8")), "started": ""}
+    if file.name in ("report.json", "index.html") and file.parent.name == "report":
+        text = re.sub(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(:\d\d)?", "", file.read_text("utf-8"))
+        return re.sub(r"[\d.,]+( s\b| min\b|,?\n|</td>)", r"\1", text)
+    return file.read_bytes()
+
+
+def main() -> None:
+    folder, job, moments = Path(sys.argv[1]), JOBS[sys.argv[2]], sys.argv[3:]
+    for module in ("survey.scan", "survey.merge", "survey.export"):
+        __import__(f"murkscan.{module}")
+    in_a_child(lambda: make_inputs(folder))
+    want, out = folder / f"want-{sys.argv[2]}", folder / f"out-{sys.argv[2]}"
+    shutil.rmtree(want, ignore_errors=True)
+
+    def count() -> None:
+        counted = kill_before(0, want)
+        job(folder, want)
+        (folder / "count").write_text(str(counted[0]))
+
+    assert in_a_child(count) == 0
+    expected = contents(want)
+    for moment in moments:
+        if moment == "count":
+            print(json.dumps({"count": int((folder / "count").read_text())}), flush=True)
+            continue
+        shutil.rmtree(out, ignore_errors=True)
+
+        def disturbed(moment: str = moment) -> None:
+            if "." in moment:
+                kill_after(float(moment))
+            else:
+                kill_before(int(moment), out)
+            job(folder, out)
+
+        first = in_a_child(disturbed)
+        second = in_a_child(lambda: job(folder, out))
+        got = contents(out)
+        names = sorted({n for n in got.keys() | expected.keys() if got.get(n) != expected.get(n)})
+        told = {"moment": moment, "killed": first == -signal.SIGKILL, "failed": second != 0}
+        print(json.dumps(told | {"differ": names}), flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,32 @@
+"""Folders of scans of which only some stages are there."""
+
+import time
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from murkscan.project import Kind, Project, RecordingRecord, ScanRecord, Stage
+
+RECORDING = RecordingRecord("dive.mkv", "1", (640, 480), is_timed=True, fields_per_picture=1)
+SCAN = ScanRecord(versions={}, recording=RECORDING, rig={})
+MERGED = ScanRecord(versions={}, recording=None, rig={}, merged=("a", "b"))
+
+
+def finish(
+    project: Project,
+    kind: Kind[Any],
+    result: Any,
+    *,
+    inputs: Mapping[str, Any] | None = None,
+    make: Callable[[], object] = lambda: None,
+) -> Stage[Any]:
+    """Finish a stage with a result and with the files that `make` saves."""
+    stage = project.stage(kind, settings={}, inputs=inputs or {})
+    stage.begin()
+    make()
+    stage.finish(result, since=time.monotonic())
+    return stage
+
+
+def save_cloud(project: Project, cloud: Any) -> None:
+    with project.writing_cloud() as write:
+        write(cloud)
