@@ -1,5 +1,6 @@
 """Pictures from here and there in a video, without decoding all of it."""
 
+import math
 from collections.abc import Iterator, Sequence
 from contextlib import closing, suppress
 from itertools import islice
@@ -21,7 +22,7 @@ def pictures_at(path: Path, times: Sequence[float]) -> Iterator[Any]:
 
     Where there is a keyframe since the last picture, the last one before the time is given, which
     costs one picture's decoding; otherwise the video is decoded on up to the time. So no part is
-    decoded twice. Times whose pictures cannot be decoded are left out.
+    decoded twice. Times whose pictures cannot be decoded are left out, and pictures without a time.
     """
     keyframes = find_keyframes(path, times)
     position = _NOWHERE
@@ -32,6 +33,8 @@ def pictures_at(path: Path, times: Sequence[float]) -> Iterator[Any]:
             if jumps:
                 pictures = _restart(container, keyframe)
             for decoded in pictures:
+                if math.isnan(picture_time(decoded)):
+                    continue
                 position = max(position, picture_time(decoded))
                 if jumps or position >= time - _SAME:
                     yield decoded

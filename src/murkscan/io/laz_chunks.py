@@ -7,6 +7,7 @@ number of points, and the length of each of its layers::
 """
 
 import struct
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -46,7 +47,9 @@ def check_laz_chunks(path: Path, header: Any) -> None:
     start = header.offset_to_point_data
     with path.open("rb") as file:
         file.seek(start)
-        chunks = lazrs.read_chunk_table(file, lazrs.LazVlr(stated))
+        vlr = lazrs.LazVlr(stated)
+        chunks = lazrs.read_chunk_table(file, vlr)
+        _check_count(chunks, vlr, header.point_count, path)
         room = path.stat().st_size - start
         lengths = np.array([length for _, length in chunks], float)
         if lengths.sum() > room:
@@ -63,6 +66,20 @@ def check_laz_chunks(path: Path, header: Any) -> None:
                 _check_layers(
                     file, int(begin), int(length), header.point_format.size, num_layers, path
                 )
+
+
+def _check_count(
+    chunks: Sequence[tuple[int | None, int]], vlr: Any, num_points: int, path: Path
+) -> None:
+    """Refuse fewer chunks than the points need: what is read behind them is not looked at here."""
+    sizes = [vlr.chunk_size() if count is None else count for count, _ in chunks]
+    if vlr.uses_variable_size_chunks() is False:
+        sizes = [vlr.chunk_size()] * len(chunks)
+    if sum(sizes) < num_points:
+        raise FormatError(
+            f"{path} declares {num_points} points but has room for {sum(sizes)} in "
+            f"{len(chunks)} chunks; it is damaged."
+        )
 
 
 def _items(stated: bytes, path: Path) -> tuple[int, list[tuple[int, int]]]:
