@@ -22,17 +22,18 @@ class Judged:
     is_right: np.ndarray
     is_edge: np.ndarray
     """Which found centres lie near an end of their scan line."""
-    num_unclear: int
-    """Found centres that are not judged."""
+    unclear: np.ndarray
+    """Frame, scan line and position of each that is not judged."""
 
     def of_frames(self, first: int, last: int) -> "Judged":
         """Pick the frames from `first` up to `last`, without it."""
-        true, found = (
-            (first <= rows[:, 0]) & (rows[:, 0] < last) for rows in (self.true, self.found)
+        true, found, unclear = (
+            (first <= rows[:, 0]) & (rows[:, 0] < last)
+            for rows in (self.true, self.found, self.unclear)
         )
         return Judged(
             self.true[true], self.is_hit[true], self.found[found], self.is_right[found],
-            self.is_edge[found], self.num_unclear,
+            self.is_edge[found], self.unclear[unclear],
         )  # fmt: skip
 
 
@@ -51,7 +52,7 @@ def judge(found: np.ndarray, truth: Truth, *, length: int) -> Judged:
         if not is_right[i] and not is_hit[k]:
             is_right[i] = is_hit[k] = True
     is_edge = (judged[:, 2] < EDGE) | (judged[:, 2] > length - 1 - EDGE)
-    return Judged(truth.rows, is_hit, judged, is_right, is_edge, int((~is_judged).sum()))
+    return Judged(truth.rows, is_hit, judged, is_right, is_edge, found[~is_judged])
 
 
 def _near_pairs(found: np.ndarray, true: np.ndarray) -> Iterator[tuple[float, int, int]]:
@@ -75,7 +76,7 @@ def pool(parts: list[Judged]) -> dict[str, float]:
         "edge": 100 * edge / found if found else 0.0,
         "true": true,
         "found": found,
-        "unclear": sum(p.num_unclear for p in parts),
+        "unclear": sum(len(p.unclear) for p in parts),
     }
 
 

@@ -62,7 +62,7 @@ class RealSet:
     is_stage: bool = False
     """Whether it is a scan on the linear stage, for which there are bars of their own."""
     num_fitted: int = 0
-    """First frames by which settings may be fitted; these are judged apart."""
+    """First frames of each recording by which settings may be fitted; these are judged apart."""
 
 
 def _stage_rig(column: float) -> Rig:

@@ -158,9 +158,10 @@ def tell_truth(drawing: Drawing, finder: str, found: dict[str, Lines]) -> Truth:
         agreed = _agreed(cell, sides)
         for position in positions:
             place, within = _place(position, agreed)
-            rows.append((*cell, place, max(within, drawing.wide.get(cell, 0.0))))
-    true = np.array(sorted(rows)).reshape(-1, 4)
-    return Truth(true[~is_unclear(true, drawing.unclear)], drawing.unclear)
+            rows.append((*cell, position, place, max(within, drawing.wide.get(cell, 0.0))))
+    true = np.array(sorted(rows)).reshape(-1, 5)
+    true = true[~is_unclear(true, drawing.unclear)]
+    return Truth(true[:, [0, 1, 3, 4]], drawing.unclear)
 
 
 def _agreed(cell: tuple[int, int], sides: list[list[Lines]]) -> list[float]:
