@@ -6,9 +6,9 @@ from .base import ignore_skip as ignore_skip
 from .camera import camera_images as camera_images
 from .camera import is_camera as is_camera
 from .colour import grey_from_colour as grey_from_colour
+from .field_order import Fields as Fields
 from .folder import ImageFolder as ImageFolder
 from .growing import RecordingProgress as RecordingProgress
-from .open import Fields as Fields
 from .open import open_recording as open_recording
 from .record import record_images as record_images
 from .stream import copy_stream as copy_stream

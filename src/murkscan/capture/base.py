@@ -40,6 +40,8 @@ class AbstractRecording(abc.ABC):
     """Whether a picture is one frame or two fields, and which of them came first."""
     is_timed: bool
     """Whether frames have real times; otherwise a frame's time is the number of its picture."""
+    remarks: tuple[str, ...]
+    """What was found out on opening that a user should know, in sentences."""
     num_frames: int | None
     """How many frames the recording claims, for a progress bar; None where it does not say."""
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import final
 
 from ..errors import FormatError
-from ..io.images import read_image
+from ..io.images import NOT_READ, read_image
 from ..types.arrays import Image
 from ..types.frame import Frame
 from .base import AbstractRecording, Skip, fingerprint_files, ignore_skip, spread_evenly
@@ -37,11 +37,25 @@ def natural_key(name: str) -> tuple[list[tuple[int, str]], str]:
 def list_pictures(path: Path) -> tuple[str, ...]:
     """List the names of a folder's pictures in natural order; other files are passed over.
 
+    Pictures of kinds that are not read are listed as well, so that each keeps its place; but not
+    where a readable one of the same name lies beside it, as cameras write both.
+
     Raises:
-        FormatError: There is none.
+        FormatError: There is none that is read.
     """
-    files = [file for file in path.iterdir() if is_picture(file) and file.is_file()]
+    there = [file for file in path.iterdir() if file.is_file() and file.name[:1] != "."]
+    files = [file for file in there if is_picture(file)]
+    names = {file.stem for file in files}
+    others = [file for file in there if file.suffix.lower() in NOT_READ]
+    if files:
+        files += [file for file in others if file.stem not in names]
     if not files:
+        kinds = ", ".join(sorted({file.suffix for file in others}))
+        if others:
+            raise FormatError(
+                f"The {len(others)} pictures in {path} are of a kind that is not read ({kinds}); "
+                "convert them to PNG or TIFF, without another size or other tones."
+            )
         raise FormatError(
             f"The folder {path} holds no pictures ({', '.join(_SUFFIXES)}). Give the "
             "folder they lie in, or a video file itself."
@@ -59,8 +73,11 @@ class ImageFolder(AbstractRecording):
     order: FieldOrder
     is_timed: bool
     num_frames: int | None
+    remarks: tuple[str, ...]
     files: tuple[str, ...]
-    """Names of the pictures."""
+    """Name of each picture's file."""
+    pages: tuple[int, ...]
+    """Number of each picture in its file: a TIFF may have several pages."""
     times: tuple[float, ...]
     """Time of each picture [s], increasing, or its number where it has none."""
     spacing: float
@@ -81,7 +98,7 @@ class ImageFolder(AbstractRecording):
         for picture in range(start // each, len(self.files)):
             first = max(picture * each, start)
             try:
-                image = read_grey(self.path / self.files[picture], self.wavelength)
+                image = self._read(picture)
             except FormatError as error:
                 on_skip(Skip(first, str(error), (picture + 1) * each - first))
                 continue
@@ -92,7 +109,7 @@ class ImageFolder(AbstractRecording):
         frames: list[Frame] = []
         for picture in spread_evenly(len(self.files), count):
             try:
-                image = read_grey(self.path / self.files[picture], self.wavelength)
+                image = self._read(picture)
             except FormatError:
                 continue
             fields = self._split(image, picture)
@@ -105,14 +122,20 @@ class ImageFolder(AbstractRecording):
     def fingerprint(self) -> str:
         """Give a text that changes when the recording's frames or their times would."""
         reading = (self.order, self.is_timed, self.times, self.wavelength)
-        return fingerprint_files([self.path / name for name in self.files], reading)
+        names = dict.fromkeys(self.files)
+        return fingerprint_files([locate(self.path, name) for name in names], reading)
+
+    def _read(self, picture: int) -> Image:
+        file = locate(self.path, self.files[picture])
+        return read_grey(file, self.wavelength, self.pages[picture])
 
     def _split(self, image: Image, picture: int) -> list[Frame]:
         height, width = image.shape
         if (width, height) != self.size:
             raise FormatError(
-                f"{self.path / self.files[picture]} is {width} x {height} px, but the recording "
-                f"is {self.size[0]} x {self.size[1]} px; remove it or sort the recordings apart."
+                f"{locate(self.path, self.files[picture])} is {width} x {height} px, but the "
+                f"recording is {self.size[0]} x {self.size[1]} px; remove it or sort the "
+                "recordings apart."
             )
         return split_fields(
             image,
@@ -129,14 +152,19 @@ class ImageFolder(AbstractRecording):
         return min(self.times[picture + 1] - self.times[picture], self.spacing)
 
 
-def read_grey(path: Path, wavelength: float) -> Image:
+def locate(path: Path, name: str) -> Path:
+    """Give the file of a picture: in a folder, or the recording's only file itself."""
+    return path if path.name == name and path.is_file() else path / name
+
+
+def read_grey(path: Path, wavelength: float, page: int = 0) -> Image:
     """Read a picture as grey levels, 8 or 16 bit; colours are weighted for the laser's.
 
     Raises:
         FormatError: The file is no picture, or a broken one.
     """
     try:
-        image = read_image(path)
+        image = read_image(path, page)
     except OSError as error:
         raise FormatError(f"{path} cannot be read: {error.strerror or error}.") from error
     return image if image.ndim == 2 else grey_from_colour(image, wavelength)

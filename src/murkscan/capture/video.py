@@ -37,6 +37,7 @@ class Video(AbstractRecording):
     order: FieldOrder
     is_timed: bool
     num_frames: int | None
+    remarks: tuple[str, ...]
     clock: Clock
     """What the container's times mean."""
     wavelength: float

@@ -36,7 +36,12 @@ class RecordingFlags:
         """Open the recording of a rig."""
         from ..capture import open_recording
 
-        return open_recording(path, wavelength=rig.wavelength, fps=self.fps, fields=self.fields)
+        recording = open_recording(
+            path, wavelength=rig.wavelength, fps=self.fps, fields=self.fields
+        )
+        for remark in recording.remarks:
+            print(f"recording  {path.name}: {remark}")
+        return recording
 
 
 _OF_LOGS = {
