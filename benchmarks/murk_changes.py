@@ -113,7 +113,7 @@ def _as_exposed(scene: Scene) -> Scene:
     """Say the exposure that the stripe's grey level stands for by its time."""
     sensor = replace(scene.sensor, peak_grey=None, vignetting=False)
     simulator = Simulator.of(replace(scene, sensor=replace(scene.sensor, vignetting=False)))
-    wanted = float(np.median(simulator.electrons))
+    wanted = float(np.median(simulator.camera.electrons))
     given = sensor.electrons_per_radiance(scene.rig.wavelength) / scene.index**2
     exposure = sensor.exposure * wanted / given
     return replace(scene, sensor=replace(sensor, exposure=exposure, vignetting=True))

@@ -123,7 +123,7 @@ def test_fields_show_their_own_rows():
     light = simulator.draw_light(7)
     frame = simulator.draw_frame(7).frame
     assert (frame.first_row, frame.row_step, frame.image.shape) == (1, 2, (288, 720))
-    expected = (light.total * simulator.electrons)[1::2] * scene.sensor.grey_per_electron + 4
+    expected = (light.total * simulator.camera.electrons)[1::2] * scene.sensor.grey_per_electron + 4
     away = frame.image - np.clip(expected, 0, 255)
     assert abs(np.median(away)) < 1
 

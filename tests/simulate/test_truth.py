@@ -107,7 +107,7 @@ def test_the_bound_is_that_of_a_gaussian_in_white_noise():
     simulator = Simulator.of(scene)
     frame = simulator.draw_frame(0)
     width = math.sqrt(4.0 + 1 / 12)
-    light = (frame.light.lasers[0].stripe * simulator.electrons)[:, 360].sum()
+    light = (frame.light.lasers[0].stripe * simulator.camera.electrons)[:, 360].sum()
     peak = light / (math.sqrt(2 * math.pi) * width)
     # field.md and Kay: 1.062 · √w · s / A for a stripe sampled well.
     assert frame.stripe.crlb[360] == pytest.approx(
@@ -124,9 +124,9 @@ def test_the_bound_is_reached_by_least_squares():
     simulator = Simulator.of(scene)
     light = simulator.draw_light(0)
     stripe, slope = (
-        p * simulator.electrons for p in (light.lasers[0].stripe, light.lasers[0].slope)
+        p * simulator.camera.electrons for p in (light.lasers[0].stripe, light.lasers[0].slope)
     )
-    weight = 1 / sensor.variance(light.total * simulator.electrons)
+    weight = 1 / sensor.variance(light.total * simulator.camera.electrons)
     known = (weight * slope**2).sum(axis=0)
     rng = np.random.default_rng(0)
     errors = []

@@ -10,16 +10,14 @@ from ..types.arrays import Mask, Scalars, SmallNumbers
 from ..types.frame import Frame
 from ..types.true_stripe import TrueStripe
 from .ambient import draw_ambient
-from .fixed_pattern import draw_fixed_pattern
+from .camera_view import CameraView
 from .information import measure_information
 from .laser_view import LaserView, view_laser
 from .line_image import LineImage, draw_laser
 from .lit_line import LitLine, cast_fan, find_lit_line
-from .overlay import write_over
 from .scene import Scene
-from .sensor import Picture, expose, sensitivity
+from .sensor import Picture, sensitivity
 from .snow_image import density_for
-from .window import WindowView, view_window
 
 _BRIGHTEST = 0.97
 """Quantile of the stripe's peaks by which the exposure is set."""
@@ -66,11 +64,7 @@ class Simulator:
 
     scene: Scene
     lasers: tuple[LaserView, ...]
-    electrons: Picture
-    """Electrons that 1 W/m²/sr behind the window makes in each pixel."""
-    dark: Picture
-    """Electrons that are in each pixel without any light from the scene."""
-    window: WindowView
+    camera: CameraView
     snow_density: tuple[float, ...]
     """Particles that each laser's sheet may cut [1/m³]."""
 
@@ -90,29 +84,8 @@ class Simulator:
             density_for(scene.particles, laser, light.mask, _reach(scene, light))
             for laser, light in zip(lasers, lights[len(lights) // 2], strict=True)
         )
-        return cls._fit_out(scene, lasers, _electrons(scene, lasers, lights), densities)
-
-    @classmethod
-    def _fit_out(
-        cls,
-        scene: Scene,
-        lasers: tuple[LaserView, ...],
-        electrons: Picture,
-        densities: tuple[float, ...],
-    ) -> "Simulator":
-        """Add what stands still in the picture: the window's flaws and the sensor's own."""
-        camera, sensor = scene.rig.camera, scene.sensor
-        axis = lasers[0].scan_lines.laser.axis if lasers else "y"
-        window = view_window(
-            scene.window,
-            camera.size,
-            focal_length=camera.focal_length[0],
-            axis=axis,
-            seed=scene.seed,
-        )
-        pattern = draw_fixed_pattern(sensor, camera.size, seed=scene.seed)
-        dark = pattern.dark + window.ghost / np.float32(sensor.grey_per_electron)
-        return cls(scene, lasers, electrons * pattern.response, dark, window, densities)
+        camera = CameraView.of(scene, _electrons(scene, lasers, lights))
+        return cls(scene, lasers, camera, densities)
 
     def draw_light(self, number: int) -> LightImage:
         """Draw all light of a frame, before the window."""
@@ -121,7 +94,7 @@ class Simulator:
             draw_laser(self.scene, laser, number, snow_density=density)
             for laser, density in zip(shining, self.snow_density, strict=False)
         )
-        ambient = np.zeros_like(self.electrons)
+        ambient = np.zeros_like(self.camera.electrons)
         if self.scene.light.shows_objects:
             ambient = draw_ambient(self.scene, number)
         return LightImage(lasers, ambient)
@@ -129,23 +102,15 @@ class Simulator:
     def draw_frame(self, number: int) -> SimulatedFrame:
         """Draw a frame, with its noise and its truth; it depends on no other frame."""
         scene, light = self.scene, self.draw_light(number)
-        electrons = self.window.pass_light(light.total) * self.electrons + self.dark
-        noise = np.random.default_rng([scene.seed, 0, number])
-        image = expose(scene.sensor, scene.as_field(electrons, number), noise)
-        image = scene.processing.process(image, scene.sensor.white)
-        time = float(scene.times[number] - scene.times[0])
-        over = scene.overlay.draw(scene.rig.camera.size, time, scene.sensor.white)
-        image = write_over(image, scene.as_field(over, number))
+        taken = self.camera.take(light.total, number)
         frame = Frame(
-            image,
+            taken.image,
             number,
             float(scene.times[number]),
             scene.first_row(number),
             scene.row_step,
         )
-        lost = scene.sensor.is_full(electrons) | ~np.isnan(over)
-        variance = np.where(lost, np.inf, scene.sensor.variance(electrons))
-        return SimulatedFrame(frame, self._tell_truth(light, variance, number), light)
+        return SimulatedFrame(frame, self._tell_truth(light, taken.variance, number), light)
 
     def _tell_truth(self, light: LightImage, variance: Picture, number: int) -> TrueStripe:
         parts = [
@@ -161,8 +126,8 @@ class Simulator:
         length = self.scene.rig.camera.size["xy".index(self.lasers[laser].scan_lines.laser.axis)]
         inside = (line.positions > -0.5) & (line.positions < length - 0.5)
         line, widths, reflected = line[inside], widths[inside], reflected[inside]
-        seen = self.electrons * self.window.transmission
-        pictures = [light.stripe * seen, light.slope * seen, variance]
+        response = self.camera.response
+        pictures = [light.stripe * response, light.slope * response, variance]
         told = np.ones(self.scene.rig.camera.size[0], bool)
         if self.lasers[laser].scan_lines.laser.axis == "y":
             pictures = [picture.T for picture in pictures]
