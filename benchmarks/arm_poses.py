@@ -15,14 +15,15 @@ from harness import DATA, Figure, skip, tell
 
 from murkscan.calibrate import (
     BoardView,
+    Calibration,
     Chessboard,
     Margin,
-    keep_on_board,
+    circles_of,
+    find_board,
     laser_contrast,
-    mask_to_sheet,
     white_of_board,
 )
-from murkscan.calibrate.hand_eye import MountCalibration
+from murkscan.calibrate.board.stripe import keep_on_board, mask_to_sheet
 from murkscan.capture.folder import natural_key
 from murkscan.extract import AbstractExtractor, GrayGravity, Murk
 from murkscan.geometry import fit_plane
@@ -31,7 +32,7 @@ from murkscan.io.rig_toml import load_rig
 from murkscan.io.times_csv import write_times
 from murkscan.optics import project
 from murkscan.survey.board_photos import BoardPhotos
-from murkscan.survey.calibrate import calibrate_camera_from_photos
+from murkscan.survey.calibrate_camera import calibrate_camera_from_photos
 from murkscan.survey.calibrate_laser import calibrate_laser_from_photos
 from murkscan.survey.calibrate_mount import calibrate_mount_from_photos
 from murkscan.triangulate import RaySheet
@@ -72,7 +73,7 @@ def main() -> None:
             photos, BOARD, rig_path, margin=PAPER, extractor=EXTRACTORS[CALIBRATES]
         )
         result = calibrate_mount_from_photos(photos, BOARD, rig_path, log)
-        figures = [*tell_mount(result.calibration, result.num_photos - len(result.without_board))]
+        figures = [*tell_mount(result.calibration)]
         figures += tell_planes(photos, load_rig(rig_path), result.calibration, log)
     figures.append(Figure("time, with pictures", time.perf_counter() - start, "s"))
     tell(
@@ -112,31 +113,30 @@ def convert(source: Path, scratch: Path) -> Trajectory:
     return log
 
 
-def tell_mount(found: MountCalibration, num_boards: int) -> Iterator[Figure]:
-    yield Figure("photos with a whole board, of 30", num_boards)
-    yield Figure("of these left out as outliers", len(found.left_out))
-    yield Figure("hand-eye closes to", found.closure * 1e3, "mm", at_most=0.4)
-    yield Figure("hand-eye closes to, in attitude", float(np.degrees(found.turn)), "°")
+def tell_mount(found: Calibration) -> Iterator[Figure]:
+    circles, num_left_out = circles_of(found), len(found.left_out)
+    yield Figure("photos with the board, of 30", len(found.sightings) + num_left_out)
+    yield Figure("of these left out as outliers", num_left_out)
+    yield Figure("hand-eye closes to", circles.closure * 1e3, "mm", at_most=0.4)
+    yield Figure("hand-eye closes to, in attitude", float(np.degrees(circles.turn)), "°")
     yield Figure("deviation of the place, largest", float(found.sigma[:3].max()) * 1e3, "mm")
     turn = float(np.degrees(found.sigma[3:].max()))
     yield Figure("deviation of the direction, largest", turn, "°")
 
 
-def tell_planes(
-    photos: Path, rig: Rig, found: MountCalibration, log: Trajectory
-) -> Iterator[Figure]:
-    views = {view.name: view for view in (*found.views, *found.left_out)}
+def tell_planes(photos: Path, rig: Rig, found: Calibration, log: Trajectory) -> Iterator[Figure]:
+    mount, stand = found.rig.vehicle_from_camera, found.adjustment.stand
+    assert mount is not None
+    assert stand is not None
     for words, extractor in EXTRACTORS.items():
         in_robot, along = [], []
         for number, photo in enumerate(BoardPhotos.open(photos)):
             vehicle = pose_at(log, EVERY * number)
-            camera_from_board = (
-                vehicle @ found.vehicle_from_camera
-            ).inverse() @ found.world_from_board
-            view = views.get(photo.name)
+            camera_from_board = (vehicle @ mount).inverse() @ stand.world_from_board
+            view = find_board(photo.as_grey(), BOARD, name=photo.name)
             pixels = find_stripe(photo.image, view, rig, camera_from_board, extractor)
             points = RaySheet().locate(pixels, rig, 0)
-            in_robot.append(vehicle @ found.vehicle_from_camera @ points)
+            in_robot.append(vehicle @ mount @ points)
             along.append(pixels[:, 0])
         residuals = fit_plane(np.concatenate(in_robot), tolerance=np.inf).residuals
         yield Figure(f"{words}: photos with a stripe", sum(len(p) > 0 for p in in_robot))
@@ -160,7 +160,7 @@ def tell_planes(
 
 def find_stripe(
     image: np.ndarray,
-    view: BoardView | None,
+    view: BoardView,
     rig: Rig,
     camera_from_board: Pose,
     extractor: AbstractExtractor,
@@ -168,7 +168,7 @@ def find_stripe(
     """Find the stripe on the board's paper, which lies where arm and mount say."""
     corners = project(rig.camera, camera_from_board @ BOARD.points())
     white = np.median(image.reshape(-1, 3), axis=0).astype(float)
-    if view is not None:
+    if view.is_found:
         white = white_of_board(image, view, BOARD)
     where = {"camera": rig.camera, "camera_from_board": camera_from_board}
     contrast = mask_to_sheet(
@@ -176,7 +176,7 @@ def find_stripe(
     )
     frame = Frame(contrast, 0, 0.0)
     (stripe,) = extractor.extract([frame], rig, extractor.learn([frame], rig))
-    placed = view or BoardView("", corners)
+    placed = view if view.is_found else BoardView("", corners)
     return keep_on_board(stripe.pixels, placed, BOARD, PAPER, **where).pixels
 
 

@@ -12,16 +12,26 @@ from pathlib import Path
 import numpy as np
 from harness import DATA, Figure, skip, tell
 
-from murkscan.calibrate import CameraCalibration, Chessboard, Margin, calibrate_camera
+from murkscan.calibrate import (
+    BoardView,
+    Calibration,
+    Chessboard,
+    Margin,
+    calibrate_camera,
+    sheet_of,
+)
+from murkscan.calibrate.adjust.observations import Sighting
 from murkscan.errors import Degenerate
 from murkscan.extract import GrayGravity, Murk
-from murkscan.survey.calibrate import calibrate_camera_from_photos
+from murkscan.survey.calibrate_camera import calibrate_camera_from_photos
 from murkscan.survey.calibrate_laser import calibrate_laser_from_photos
 
 PAPER = Margin(left=0.115, right=0.08, top=0.06, bottom=0.065)
 """The white paper of the green laser's board beyond its squares, as its photos show it [m]."""
 RESAMPLES = 40
 """Sets of views drawn for a bootstrap: a deviation is then known to a tenth."""
+AUTHORS = np.array([702.6, 703.5])
+"""Focal lengths that the author of underwater_line gives [px]."""
 NORMAL, DISTANCE = np.array([-0.9057, 0.1395, -0.4004]), 0.1657
 """The reference plane in the data's README, from an independent fit [m]."""
 
@@ -52,30 +62,41 @@ def measure_cameras(data: Path, scratch: Path) -> Iterator[Figure]:
     for folder, board, bar, count in [
         ("chessboards", Chessboard(9, 6, 0.03), 0.22, 13),
         ("green_laser/board", Chessboard(8, 6, 0.04), 0.16, 27),
+        ("underwater_line/air", Chessboard(8, 7, 0.0338), None, 6),
     ]:
         result = calibrate_camera_from_photos(
             data / folder, board, scratch / f"{Path(folder).parts[0]}.toml"
         )
-        camera, sigma = result.calibration.camera, result.calibration.sigma
-        found = result.num_photos - len(result.without_board)
+        camera, sigma = result.calibration.rig.camera, result.calibration.sigma
+        found = len(result.calibration.sightings)
         yield Figure(f"{folder}: RMS", result.calibration.rms, "px", at_most=bar)
         yield Figure(f"{folder}: boards found of {count}", found, at_least=count)
         yield Figure(f"{folder}: focal length", camera.focal_length[0], "px")
         yield Figure(f"{folder}: its standard deviation", float(sigma[0]), "px")
+        if folder == "underwater_line/air":
+            off = np.max(np.abs(np.array(camera.focal_length) / AUTHORS - 1))
+            yield Figure(f"{folder}: focal lengths off the author's", 100 * off, "%", at_most=1.0)
+            continue
         ratios = sigma / bootstrap(result.calibration, board)
         yield Figure(f"{folder}: least stated deviation over bootstrap", float(ratios.min()))
         yield Figure(f"{folder}: largest stated deviation over bootstrap", float(ratios.max()))
 
 
-def bootstrap(calibration: CameraCalibration, board: Chessboard) -> np.ndarray:
+def bootstrap(calibration: Calibration, board: Chessboard) -> np.ndarray:
     """Give the standard deviation of each parameter over resampled sets of views."""
     random, found = np.random.default_rng(0), []
-    views = calibration.views
+    views = [as_view(sighting, board) for sighting in calibration.sightings]
     for _ in range(RESAMPLES):
         some = [views[i] for i in random.integers(len(views), size=len(views))]
-        camera = calibrate_camera(some, board, calibration.camera.size).camera
+        camera = calibrate_camera(some, board, calibration.rig.camera.size).rig.camera
         found.append([*camera.focal_length, *camera.principal_point, *camera.distortion])
     return np.std(found, axis=0, ddof=1)
+
+
+def as_view(sighting: Sighting, board: Chessboard) -> BoardView:
+    """Number the corners of a sighting again."""
+    column, row, _ = np.rint(sighting.points / board.square).astype(int).T
+    return BoardView(sighting.name, sighting.corners, numbers=row * board.columns + column)
 
 
 def refusal_of_parallel_boards(data: Path, scratch: Path) -> str:
@@ -100,7 +121,7 @@ def measure_laser(data: Path, scratch: Path) -> Iterator[Figure]:
             margin=margin,
             extractor=extractor,
         )
-        found = result.calibration.fit
+        found = sheet_of(result.calibration, 0)
         points = np.concatenate(found.points)[np.concatenate(found.inliers)]
         turn = np.linalg.norm(np.cross(found.sheet.normal, NORMAL / np.linalg.norm(NORMAL)))
         off = float(np.abs(points @ NORMAL + DISTANCE).max())

@@ -10,8 +10,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from murkscan.calibrate import Margin
-from murkscan.calibrate.observed import index_of
-from murkscan.calibrate.sighting import Sighting
+from murkscan.calibrate.adjust.observations import Sighting, index_of
 from murkscan.io.parquet import load_true_stripe
 from murkscan.optics import project
 from murkscan.simulate import Body, Light, Scene, Sensor
@@ -130,7 +129,7 @@ def place_cameras(poses: Sequence[Pose]) -> tuple[np.ndarray, np.ndarray]:
 
 def corner_errors(found: Sequence[Sighting], photos: Photographs) -> np.ndarray:
     """Give how far found corners are from the true ones, along u and v [px]."""
-    return np.concatenate([s.corners - photos.truths[s.name].corners for s in found])
+    return np.concatenate([s.corners - _truth(s, photos).corners for s in found])
 
 
 def stripe_errors(found: Sequence[Sighting], photos: Photographs) -> tuple[np.ndarray, np.ndarray]:
@@ -148,7 +147,15 @@ def stripe_errors(found: Sequence[Sighting], photos: Photographs) -> tuple[np.nd
 
 def as_true(found: Sequence[Sighting], photos: Photographs) -> list[Sighting]:
     """Give what was found as it truly is: the same photos, corners and rows of the stripe."""
-    return [replace(photos.truths[s.name], stripe=_centres(s, photos)) for s in found]
+    return [replace(_truth(s, photos), stripe=_centres(s, photos)) for s in found]
+
+
+def _truth(found: Sighting, photos: Photographs) -> Sighting:
+    """Give what is true of those corners that were found."""
+    true = photos.truths[found.name]
+    column, row, _ = np.rint(found.points / BOARD.square).astype(int).T
+    numbers = row * BOARD.columns + column
+    return replace(true, corners=true.corners[numbers], points=true.points[numbers])
 
 
 def _centres(found: Sighting, photos: Photographs) -> np.ndarray:

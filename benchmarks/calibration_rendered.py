@@ -30,13 +30,13 @@ from calibration_underwater import (
 )
 from harness import Figure, tell
 
-from murkscan.calibrate import calibrate_camera, calibrate_laser
-from murkscan.calibrate.adjust import adjust
-from murkscan.calibrate.parameters import INTRINSICS, port_parameters, sheet_parameters
-from murkscan.calibrate.reach import spread_of_points
-from murkscan.calibrate.sighting import Sighting
+from murkscan.calibrate import calibrate_camera, calibrate_lasers
+from murkscan.calibrate.adjust.observations import Sighting
+from murkscan.calibrate.adjust.parameters import INTRINSICS, port_parameters, sheet_parameters
+from murkscan.calibrate.adjust.solve import adjust
+from murkscan.calibrate.region import spread_of_points
 from murkscan.io.rig_toml import load_rig
-from murkscan.survey.calibrate import calibrate_camera_from_photos
+from murkscan.survey.calibrate_camera import calibrate_camera_from_photos
 from murkscan.survey.calibrate_laser import calibrate_laser_from_photos
 from murkscan.survey.calibrate_port import calibrate_port_from_photos
 from murkscan.types.rig import Rig
@@ -125,7 +125,7 @@ def calibrate(
     port = calibrate_port_from_photos(wet.folder, BOARD, file).calibration
     laser = calibrate_laser_from_photos(lines.folder, BOARD, file).calibration
     found, simple = load_rig(file), calibrate_without_port(rig, port.sightings, laser.sightings)
-    used = [(camera.sightings(BOARD), dry), (port.sightings, wet), (laser.sightings, lines)]
+    used = [(camera.sightings, dry), (port.sightings, wet), (laser.sightings, lines)]
     corners = [corner_errors(*pair) for pair in used]
     on_lines, crlb = stripe_errors(laser.sightings, lines)
     pixels, points = sheet_points(rig)
@@ -146,7 +146,7 @@ def calibrate(
         stripe=rms(on_lines),
         stripe_crlb=rms(crlb),
         stripe_bias=float(on_lines.mean()),
-        boards_lost=2 * COUNT - len(camera.views) - len(port.sightings),
+        boards_lost=2 * COUNT - len(camera.sightings) - len(port.sightings),
         lines_lost=COUNT - len(laser.sightings),
     )
 
@@ -154,7 +154,7 @@ def calibrate(
 def calibrate_without_port(rig: Rig, wet: Sequence[Sighting], lines: Sequence[Sighting]) -> Rig:
     """Fit a camera and a plane to what was found in the photos under water."""
     pinhole = calibrate_camera(as_views(wet), BOARD, rig.camera.size).rig
-    return calibrate_laser(*as_photos(lines, pinhole), BOARD, pinhole).rig
+    return calibrate_lasers(*as_photos(lines, pinhole), BOARD, pinhole).rig
 
 
 def bound(

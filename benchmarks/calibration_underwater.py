@@ -18,23 +18,22 @@ from scipy.spatial.transform import Rotation
 
 from murkscan.calibrate import (
     BoardView,
-    LaserCalibration,
+    Calibration,
     StripeOnBoard,
     calibrate_camera,
-    calibrate_laser,
+    calibrate_lasers,
     calibrate_port,
 )
-from murkscan.calibrate.adjust import adjust
-from murkscan.calibrate.observed import index_of
-from murkscan.calibrate.parameters import (
+from murkscan.calibrate.adjust.observations import Sighting, index_of
+from murkscan.calibrate.adjust.parameters import (
     INTRINSICS,
     port_parameters,
     sheet_parameters,
     window_prior,
 )
+from murkscan.calibrate.adjust.solve import adjust
 from murkscan.calibrate.port import join
-from murkscan.calibrate.reach import spread_of_points
-from murkscan.calibrate.sighting import Sighting
+from murkscan.calibrate.region import spread_of_points
 from murkscan.optics import back_project, intersect_rays_with_sheet, project
 from murkscan.types.arrays import Pixels, Points
 from murkscan.types.laser import Fan
@@ -130,7 +129,7 @@ def calibrate(rig: Rig, random: np.random.Generator) -> Outcome:
     behind = calibrate_port(as_views(wet), BOARD, start).rig
     found = find_laser(behind, stripes)
     pinhole = calibrate_camera(as_views(wet), BOARD, rig.camera.size).rig
-    simple = calibrate_laser(*as_photos(stripes, pinhole), BOARD, pinhole)
+    simple = calibrate_lasers(*as_photos(stripes, pinhole), BOARD, pinhole)
     pixels, points = sheet_points(rig)
     sea = replace(rig, water=SEA)
     sea_pixels, sea_points = sheet_points(sea)
@@ -156,12 +155,12 @@ def photograph(
     )
 
 
-def find_laser(rig: Rig, stripes: Sequence[Sighting]) -> LaserCalibration:
+def find_laser(rig: Rig, stripes: Sequence[Sighting]) -> Calibration:
     sheet = rig.lasers[0].sheet
     if not isinstance(sheet, Fan):
-        return calibrate_laser(*as_photos(stripes, rig), BOARD, rig)
+        return calibrate_lasers(*as_photos(stripes, rig), BOARD, rig)
     rough = replace(sheet, origin=sheet.origin + 2e-3)
-    return calibrate_laser(*as_photos(stripes, rig), BOARD, rig, fan=rough)
+    return calibrate_lasers(*as_photos(stripes, rig), BOARD, rig, fans={0: rough})
 
 
 def bound(rig: Rig) -> float:
@@ -222,7 +221,13 @@ def guess_of(port: Port) -> Port:
 
 
 def as_views(sightings: Sequence[Sighting]) -> list[BoardView]:
-    return [BoardView(s.name, s.corners) for s in sightings]
+    """Number the corners again, of which some may be missing."""
+    views = []
+    for sighting in sightings:
+        column, row, _ = np.rint(sighting.points / BOARD.square).astype(int).T
+        numbers = row * BOARD.columns + column
+        views.append(BoardView(sighting.name, sighting.corners, numbers=numbers))
+    return views
 
 
 def as_photos(
@@ -232,7 +237,7 @@ def as_photos(
 
     stripes = [
         StripeOnBoard(
-            s.name, s.stripe, locate_seen_board(s.corners, BOARD, rig.camera, index_of(rig))
+            s.name, s.stripe, locate_seen_board(s.corners, s.points, rig.camera, index_of(rig))
         )
         for s in sightings
     ]

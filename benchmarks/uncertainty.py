@@ -12,9 +12,9 @@ from harness import Figure, tell
 from scipy.spatial.transform import Rotation
 
 from murkscan.calibrate import Chessboard
-from murkscan.calibrate.adjust import adjust
-from murkscan.calibrate.parameters import INTRINSICS, port_parameters, sheet_parameters
-from murkscan.calibrate.sighting import Sighting
+from murkscan.calibrate.adjust.observations import Sighting
+from murkscan.calibrate.adjust.parameters import INTRINSICS, port_parameters, sheet_parameters
+from murkscan.calibrate.adjust.solve import adjust
 from murkscan.optics import perturb_rig, project, refractive_index
 from murkscan.optics.uncertainty import common_covariances, common_sigma
 from murkscan.triangulate import RaySheet, triangulate

@@ -59,7 +59,7 @@ def draw(camera_from_board, camera=CAMERA, board=BOARD, margin=1.0):
     fine = 3
     v, u = np.mgrid[: height * fine, : width * fine]
     pixels = (np.stack([u.ravel(), v.ravel()], axis=1) + 0.5) / fine - 0.5
-    from murkscan.calibrate.sheet import locate_on_board
+    from murkscan.calibrate.board.stripe import locate_on_board
 
     x, y, _ = (camera_from_board.inverse() @ locate_on_board(camera, pixels, camera_from_board)).T
     i, j = np.floor(x / board.square), np.floor(y / board.square)

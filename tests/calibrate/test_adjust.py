@@ -3,16 +3,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from murkscan.calibrate.adjust import adjust
-from murkscan.calibrate.linearise import State, linearise, residuals_of
-from murkscan.calibrate.observed import Boards, Observed
-from murkscan.calibrate.parameters import (
+from murkscan.calibrate.adjust.observations import Boards, Observed, Sighting
+from murkscan.calibrate.adjust.parameters import (
     INTRINSICS,
     port_parameters,
     sheet_parameters,
     window_parameters,
 )
-from murkscan.calibrate.sighting import Sighting
+from murkscan.calibrate.adjust.residuals import State, linearise, residuals_of
+from murkscan.calibrate.adjust.solve import adjust
 from murkscan.errors import Degenerate, InputError
 from murkscan.optics import perturb_rig
 from murkscan.types.rig_covariance import RigCovariance, unit_of

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from murkscan.calibrate import BoardView, Chessboard, calibrate_camera, judge_camera
+from murkscan.calibrate import BoardView, Chessboard, calibrate_camera, judge
 from murkscan.errors import Degenerate, InputError, NotEnoughData
 from murkscan.types.camera import Camera
 
@@ -23,9 +23,9 @@ def test_the_stated_deviations_and_correlations_are_true():
         random = np.random.default_rng(seed)
         found = calibrate_camera(views(random, tilted(random, 16, 30)), BOARD, CAMERA.size)
         assert found.rms == pytest.approx(0.1 * np.sqrt(2), rel=0.1)
-        error = parameters(found.camera) - parameters(CAMERA)
+        error = parameters(found.rig.camera) - parameters(CAMERA)
         pulls.append(error / found.sigma)
-        (fx_fx, fx_fy), (_, fy_fy) = found.covariance[:2, :2]
+        (fx_fx, fx_fy), (_, fy_fy) = found.rig.covariance.matrix[:2, :2]
         pulls_of_difference.append((error[0] - error[1]) / np.sqrt(fx_fx - 2 * fx_fy + fy_fy))
     # Jackknife sigmas of 16 views scatter by a fifth, and the larger of two is stated, so about
     # 1 or a little less; 12 x 9 correlated pulls leave some 0.2 of scatter to the RMS.
@@ -66,7 +66,7 @@ def test_healthy_sets_are_not_refused(seed, count, most):
     random = np.random.default_rng(100 + seed)
     found = calibrate_camera(views(random, tilted(random, count, most)), BOARD, CAMERA.size)
     # What passes is known to 5 % (the limit of refusal); 3 of those sigmas would be a lie.
-    assert found.camera.focal_length[0] == pytest.approx(800, abs=3 * found.sigma[0])
+    assert found.rig.camera.focal_length[0] == pytest.approx(800, abs=3 * found.sigma[0])
     assert found.sigma[0] < 0.05 * 800
 
 
@@ -79,7 +79,7 @@ def test_oblong_pixels_do_not_make_parallel_boards_pass_nor_healthy_ones_fail():
     found = calibrate_camera(
         views(random, tilted(random, 16, 30), camera=camera), BOARD, camera.size
     )
-    assert found.camera.focal_length == pytest.approx((900, 985), rel=0.01)
+    assert found.rig.camera.focal_length == pytest.approx((900, 985), rel=0.01)
 
 
 def test_fewer_than_four_views_are_refused_with_counts():
@@ -92,10 +92,10 @@ def test_fewer_than_four_views_are_refused_with_counts():
 def test_few_views_are_a_warning_and_fifteen_are_not():
     random = np.random.default_rng(8)
     seen = views(random, tilted(random, 20, 30))
-    few = judge_camera(calibrate_camera(seen[:8], BOARD, CAMERA.size))
+    few = judge(calibrate_camera(seen[:8], BOARD, CAMERA.size))
     assert not few.is_good
-    assert "8 views are few; take 15 or more" in str(few)
-    assert judge_camera(calibrate_camera(seen, BOARD, CAMERA.size)).is_good
+    assert "8 photos are few; take 15 or more" in str(few)
+    assert judge(calibrate_camera(seen, BOARD, CAMERA.size)).is_good
 
 
 def test_a_view_that_does_not_fit_is_left_out_and_named():
@@ -103,16 +103,16 @@ def test_a_view_that_does_not_fit_is_left_out_and_named():
     seen = views(random, tilted(random, 12, 30))
     bent = BoardView("bent", seen[3].corners + random.normal(0, 3, (54, 2)))
     found = calibrate_camera([*seen, bent], BOARD, CAMERA.size)
-    assert [view.name for view in found.left_out] == ["bent"]
+    assert found.left_out == ("bent",)
     assert found.rms < 0.2
-    assert "bent fitted far worse" in str(judge_camera(found))
+    assert "bent fitted far worse" in str(judge(found))
 
 
 def test_boards_in_one_corner_are_told_where_to_go_next():
     random = np.random.default_rng(10)
     seen = views(random, tilted(random, 15, 30))
     found = calibrate_camera(seen, BOARD, (1400, 1100))
-    advice = str(judge_camera(found))
+    advice = str(judge(found))
     assert "cover only" in advice
     assert "at the" in advice
 
@@ -135,5 +135,5 @@ def test_camera_from_board_is_where_the_board_was():
     # Corners go through OpenCV in single precision: 3e-5 px, far below a micrometre here, but
     # the fit of nine correlated parameters magnifies it.
     np.testing.assert_allclose(
-        found.camera_from_boards[0].translation, truth[0].translation, atol=2e-5
+        found.sightings[0].camera_from_board.translation, truth[0].translation, atol=2e-5
     )

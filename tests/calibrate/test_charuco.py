@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 from murkscan.calibrate import Chessboard, calibrate_camera
-from murkscan.calibrate.charuco import Markers, find_charuco
+from murkscan.calibrate.board.charuco import Markers, find_charuco
 from murkscan.errors import InputError
 from murkscan.optics import back_project, project
 from murkscan.types.camera import Camera

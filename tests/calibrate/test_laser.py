@@ -6,13 +6,14 @@ import pytest
 from murkscan.calibrate import (
     BoardView,
     StripeOnBoard,
-    calibrate_laser,
-    judge_laser,
+    calibrate_lasers,
+    judge,
+    sheet_of,
 )
-from murkscan.calibrate.adjust import adjust
-from murkscan.calibrate.observed import index_of
-from murkscan.calibrate.parameters import INTRINSICS, port_parameters
-from murkscan.calibrate.reach import point_sigma
+from murkscan.calibrate.adjust.observations import index_of
+from murkscan.calibrate.adjust.parameters import INTRINSICS, port_parameters
+from murkscan.calibrate.adjust.solve import adjust
+from murkscan.calibrate.region import errors_where_seen
 from murkscan.optics import back_project, distance_to_sheet, intersect_rays_with_sheet
 from murkscan.types.water import Water
 
@@ -43,7 +44,7 @@ def test_a_sheet_under_water_measures_as_well_as_it_states(sheet):
     seen = see_stripes(random, rig, 15)
     known = calibrated(rig, random)
     fan = None if sheet is SHEET else replace(FAN, origin=FAN.origin + 2e-3)
-    found = calibrate_laser(*as_photos(seen), BOARD, known, fan=fan)
+    found = calibrate_lasers(*as_photos(seen), BOARD, known, fans={} if fan is None else {0: fan})
     assert not found.is_camera_kept
     pixels = np.concatenate([s.stripe for s in see_stripes(random, rig, 5, noise=0.0)])
     truth, points = (
@@ -55,7 +56,7 @@ def test_a_sheet_under_water_measures_as_well_as_it_states(sheet):
     rms = np.sqrt(np.nanmean(np.sum((points - truth) ** 2, axis=1)))
     depth = float(np.nanmean(truth[:, 2]))
     # One draw of about three directions of error that matter.
-    assert rms < 2.5 * point_sigma(found.rig, 0, depth) < 5e-3 * depth
+    assert rms < 2.5 * errors_where_seen(found)[1].sigma < 5e-3 * depth
 
 
 def test_in_other_water_a_fan_measures_as_well():
@@ -63,7 +64,7 @@ def test_in_other_water_a_fan_measures_as_well():
     rig, random = rig_behind(FLAT, FAN), np.random.default_rng(2)
     known = calibrated(rig, random)
     seen = as_photos(see_stripes(random, rig, 12))
-    found = calibrate_laser(*seen, BOARD, known, fan=FAN).rig
+    found = calibrate_lasers(*seen, BOARD, known, fans={0: FAN}).rig
     sea = replace(rig, water=Water(20.0, 35.0))
     pixels = np.concatenate([s.stripe for s in see_stripes(random, sea, 5, noise=0.0)])
     truth, points = (
@@ -83,22 +84,31 @@ def test_boards_that_contradict_the_camera_do_not_move_it():
     known = adjust(replace(rig, lasers=()), see_boards(random, rig, 15), INTRINSICS).rig
     zoomed = replace(rig, camera=replace(rig.camera, focal_length=(1430.0, 1430.0)))
     stripes, views = as_photos(see_stripes(random, zoomed, 15))
-    found = calibrate_laser(stripes, views, BOARD, known)
+    found = calibrate_lasers(stripes, views, BOARD, known)
     assert found.is_camera_kept
     assert found.rig.camera.focal_length == known.camera.focal_length
     assert found.rig.covariance.select(INTRINSICS[:1]).sigma[0] == pytest.approx(
         known.covariance.sigma[0]
     )
-    assert "contradict the camera" in str(judge_laser(found))
+    assert "contradict the camera" in str(judge(found))
 
 
 def test_a_camera_without_covariance_is_exact_and_that_is_said():
     rig, random = rig_behind(None), np.random.default_rng(4)
-    found = calibrate_laser(
+    found = calibrate_lasers(
         *as_photos(see_stripes(random, rig, 15)), BOARD, replace(rig, lasers=())
     )
     assert found.rig.camera.focal_length == rig.camera.focal_length
     assert found.rig.covariance.names == found.wanted
-    assert "was taken as exact" in str(judge_laser(found))
-    off = distance_to_sheet(np.concatenate(found.fit.points), rig.lasers[0])
+    assert "was taken as exact" in str(judge(found))
+    off = distance_to_sheet(np.concatenate(sheet_of(found, 0).points), rig.lasers[0])
     assert np.sqrt(np.nanmean(off**2)) < 1e-3
+
+
+def test_boards_over_a_small_range_are_a_warning():
+    rig = rig_behind(None, SHEET)
+    seen = see_stripes(np.random.default_rng(9), rig, 30, near=0.55, far=0.65)
+    depths = [np.mean(stripe.points(rig.camera)[:, 2]) for stripe in as_photos(seen)[0]]
+    near = [seen[i] for i in np.argsort(np.abs(np.array(depths) - 0.6))[:6]]
+    verdict = judge(calibrate_lasers(*as_photos(near), BOARD, rig))
+    assert "add photos nearer and farther" in str(verdict)

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from murkscan.calibrate.observed import index_of
-from murkscan.calibrate.sighting import Sighting
+from murkscan.calibrate.adjust.observations import Sighting, index_of
 from murkscan.geometry import intersect_rays_with_plane
 from murkscan.optics import project, trace_fan
 from murkscan.types.camera import Camera

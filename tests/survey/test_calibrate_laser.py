@@ -6,9 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from murkscan.calibrate.observed import index_of
+from murkscan.calibrate import sheet_of
+from murkscan.calibrate.adjust.observations import index_of
 from murkscan.errors import InputError, MissingResult, NotEnoughData
-from murkscan.io.images import write_image
+from murkscan.io.images import read_colour, write_image
 from murkscan.io.rig_toml import load_rig, save_rig
 from murkscan.optics import back_project, distance_to_sheet, equivalent_plane
 from murkscan.survey.calibrate_laser import FanKnowledge, calibrate_laser_from_photos
@@ -79,7 +80,7 @@ def test_the_sheet_is_found_through_the_port(photos, sheet, tmp_path):
     assert result.num_photos == len(TILTS)
     assert len(result.calibration.sightings) >= 4
     found = load_rig(path)
-    points = np.concatenate(result.calibration.fit.points)
+    points = np.concatenate(sheet_of(result.calibration, 0).points)
     truth = replace(RIG, lasers=(Laser.from_sheet(sheet),))
     off = distance_to_sheet(points, truth.lasers[0], index_of(RIG))
     # A fifth of a pixel at half a metre, and a camera known to a thousandth.
@@ -148,3 +149,54 @@ def test_lines_that_miss_the_board_are_refused_with_counts(tmp_path):
     with pytest.raises(InputError, match="has 0 laser"):
         calibrate_laser_from_photos(folder, BOARD, path, laser=1)
     assert path.read_bytes() == before
+
+
+SECOND = Plane.through(np.array([0.02, 0.0, 0.0]), np.array([1.0, 0.04, -0.1]))
+"""A second sheet, which crosses the boards to the right of the first one's line."""
+
+
+@pytest.fixture(scope="module")
+def two_lines(tmp_path_factory):
+    """Photograph both lines on the same boards."""
+    folder, rigs = tmp_path_factory.mktemp("two"), []
+    for sheet in (SHEET, SECOND):
+        rigs.append(replace(RIG, lasers=(Laser.from_sheet(sheet),)))
+    for number, tilt in enumerate(TILTS):
+        pose = hold(tilt, number, DEPTHS)
+        photo = np.maximum(light(pose, rigs[0]), light(pose, rigs[1]))
+        write_image(folder / f"line{number}.png", photo)
+    return folder
+
+
+def off_the_sheet(found, number, sheet):
+    """Measure how far a laser's points are from a true sheet, in the RMS [m]."""
+    points = np.concatenate(sheet_of(found, number).points)
+    off = distance_to_sheet(points, Laser.from_sheet(sheet), index_of(RIG))
+    return np.sqrt(np.nanmean(off**2))
+
+
+def test_two_lasers_are_calibrated_on_the_same_photos(two_lines, tmp_path):
+    path = save(tmp_path / "rig.toml", SHEET)
+    found = calibrate_laser_from_photos(two_lines, BOARD, path, laser=(0, 1)).calibration
+    assert len(load_rig(path).lasers) == 2
+    # As for one laser: a fifth of a pixel at half a metre, and a camera known to a thousandth.
+    assert off_the_sheet(found, 0, SHEET) < 1e-3
+    assert off_the_sheet(found, 1, SECOND) < 1e-3
+    assert {name[:8] for name in found.wanted} == {"laser[0]", "laser[1]"}
+
+
+def test_a_second_laser_is_told_from_the_first_by_its_sheet(two_lines, tmp_path):
+    path = save(tmp_path / "rig.toml", SHEET)
+    save_rig(path, replace(load_rig(path), lasers=(Laser.from_sheet(SHEET),)))
+    found = calibrate_laser_from_photos(two_lines, BOARD, path, laser=1).calibration
+    assert off_the_sheet(found, 1, SECOND) < 1e-3
+    np.testing.assert_allclose(load_rig(path).lasers[0].sheet.normal, SHEET.normal, atol=1e-9)
+
+
+def test_a_line_of_another_colour_than_the_rig_says_is_told(photos, tmp_path):
+    folder = tmp_path / "red"
+    for file in photos.iterdir():
+        write_image(folder / file.name, read_colour(file)[:, :, [1, 0, 2]])
+    path = save(tmp_path / "rig.toml", SHEET)
+    with pytest.raises(NotEnoughData, match="line looks red, the rig says 532 nm"):
+        calibrate_laser_from_photos(folder, BOARD, path)

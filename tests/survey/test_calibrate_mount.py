@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from murkscan.calibrate import Chessboard
-from murkscan.calibrate.sheet import locate_on_board
+from murkscan.calibrate import Chessboard, circles_of
+from murkscan.calibrate.board.stripe import locate_on_board
 from murkscan.errors import InputError, MissingResult, NotEnoughData
 from murkscan.io.images import write_image
 from murkscan.io.rig_toml import load_rig, save_rig
@@ -70,8 +70,9 @@ def test_the_mount_and_what_it_is_worth_are_written(recorded, rig_path):
     # Corners to 0.03 px of 350 at 0.45 m are 0.04 mm each; six views tell a tilt to 0.1 degrees.
     off = MOUNT.inverse() @ rig.vehicle_from_camera
     assert np.linalg.norm(off.translation) < 2e-3
-    assert result.calibration.closure < 1e-3
+    assert circles_of(result.calibration).closure < 1e-3
     np.testing.assert_allclose(rig.covariance.sigma, result.calibration.sigma, rtol=1e-6)
+    assert "Mount" in result.page.read_text("utf-8")
     record = tomllib.loads(rig_path.read_text("utf-8"))["calibration"]["mount"]
     assert record["views"] == len(TILTS)
     assert "clock_offset_s" not in record

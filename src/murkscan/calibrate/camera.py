@@ -1,29 +1,24 @@
 """A camera from photos of a chessboard."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 
 import cv2
 import numpy as np
-from jaxtyping import Float
 
 from ..errors import Degenerate, InputError, NotEnoughData
-from ..types.arrays import Pixels, Points, Scalars
 from ..types.camera import Camera
 from ..types.pose import Pose
 from ..types.rig import Rig
-from .adjust import Adjustment, adjust
-from .board import Chessboard
-from .parameters import INTRINSICS
-from .sighting import Sighting
-from .tilt import refuse_parallel_boards
-from .view import BoardView, as_opencv
-from .worth import Worth
+from .adjust.covariance import Worth
+from .adjust.observations import Sighting
+from .adjust.parameters import INTRINSICS
+from .adjust.solve import adjust, rms_of
+from .board.chessboard import Chessboard
+from .board.tilt import refuse_parallel_boards
+from .board.view import BoardView, as_opencv
+from .calibration import MIN_VIEWS, Calibration, find_outlier
 
-PARAMETERS = ("fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3")
-"""Names of a camera's parameters, in the order of `CameraCalibration.covariance`."""
-MIN_VIEWS = 4
-"""Views below which no camera is calibrated."""
 _MAX_FOCAL_SIGMA = 0.05
 """Standard deviation of the focal length, over itself, above which it is not determined.
 
@@ -34,61 +29,11 @@ _MAX_SIGMA_WITHOUT = 0.1
 """The same for what is left without any one view."""
 _OUTLIER = 3.0
 """A view whose RMS is so many times the median is left out."""
-_MAX_OUTLIERS = 0.25
-"""Share of the views that may be left out."""
-
-
-@dataclass(frozen=True, eq=False)
-class CameraCalibration:
-    """A camera, and what it is worth."""
-
-    camera: Camera
-    """The camera."""
-    views: tuple[BoardView, ...]
-    """The views that it was calibrated on."""
-    camera_from_boards: tuple[Pose, ...]
-    """Where the board was in each view."""
-    residuals: tuple[Float[np.ndarray, "_ 2"], ...]
-    """Corner as found minus corner as projected, of each view [px]."""
-    covariance: Float[np.ndarray, "9 9"]
-    """Of `PARAMETERS`, told from the residuals and from how much the views disagree."""
-    left_out: tuple[BoardView, ...]
-    """Views left out, since they fit far worse than the others."""
-    adjustment: Adjustment
-    """The same with what hangs on one view alone, and the rig that carries it."""
-
-    @property
-    def rig(self) -> Rig:
-        """The camera with its covariance, as a rig in air."""
-        return self.adjustment.rig
-
-    def sightings(self, board: Chessboard) -> tuple[Sighting, ...]:
-        """Give the views with the board where it was found to be."""
-        flat = board.points()
-        return tuple(
-            Sighting(view.name, view.corners, view.places(flat), pose)
-            for view, pose in zip(self.views, self.camera_from_boards, strict=True)
-        )
-
-    @property
-    def sigma(self) -> Scalars:
-        """Standard deviation of each of `PARAMETERS`."""
-        return np.sqrt(np.diag(self.covariance))
-
-    @property
-    def rms(self) -> float:
-        """Root mean square distance of a corner from its projection [px]."""
-        return _rms(np.concatenate(self.residuals))
-
-    @property
-    def view_rms(self) -> tuple[float, ...]:
-        """The same for each view [px]."""
-        return tuple(_rms(residuals) for residuals in self.residuals)
 
 
 def calibrate_camera(
     views: Sequence[BoardView], board: Chessboard, size: tuple[int, int]
-) -> CameraCalibration:
+) -> Calibration:
     """Calibrate a camera on views of one board.
 
     A low RMS does not make a camera: boards that are parallel fit any focal length. So sets whose
@@ -112,23 +57,25 @@ def calibrate_camera(
     used = [view for view in views if view.is_found]
     _check_views(used, len(views), board)
     refuse_parallel_boards(used, board, size)
-    fit, left_out = _fit_without_outliers(used, board, size)
-    found = adjust(Rig(fit.camera), fit.sightings(board), INTRINSICS)
-    worth = found.worth
-    camera, covariance = found.rig.camera, worth.covariance.matrix
-    sigma = float(np.sqrt(covariance[0, 0]))
-    if sigma > _MAX_FOCAL_SIGMA * camera.focal_length[0]:
+    left_out = list[str]()
+    while True:
+        camera, sightings, view_rms = _fit_plainly(used, board, size)
+        worst = find_outlier(view_rms, len(left_out), outlier=_OUTLIER)
+        if worst is None:
+            break
+        left_out.append(used.pop(worst).name)
+    found = adjust(Rig(camera), sightings, INTRINSICS)
+    focal_length, sigma = found.rig.camera.focal_length[0], float(found.sigma[0])
+    if sigma > _MAX_FOCAL_SIGMA * focal_length:
         raise Degenerate(
-            f"The {len(fit.views)} views do not determine the focal length: with RMS "
-            f"{found.corner_sigma:.2f} px it comes out as {camera.focal_length[0]:.0f} ± "
+            f"The {len(used)} views do not determine the focal length: with RMS "
+            f"{found.corner_sigma:.2f} px it comes out as {focal_length:.0f} ± "
             f"{sigma:.0f} px. Add views with the board tilted by 20 to 40 degrees to the left, the "
             "right, the top and the bottom, in different parts of the picture."
         )
-    _refuse_one_photo(worth, fit.views, camera.focal_length[0])
-    return CameraCalibration(
-        camera, fit.views, found.camera_from_boards, found.corner_residuals, covariance, left_out,
-        found,
-    )  # fmt: skip
+    _refuse_one_photo(found.worth, used, focal_length)
+    calibration = Calibration.of("camera", found, INTRINSICS, sightings)
+    return replace(calibration, left_out=tuple(left_out))
 
 
 def _refuse_one_photo(worth: Worth, views: Sequence[BoardView], focal_length: float) -> None:
@@ -159,40 +106,14 @@ def _check_views(used: Sequence[BoardView], num_tried: int, board: Chessboard) -
         )
 
 
-@dataclass(frozen=True, eq=False)
-class _PlainFit:
-    """A camera as OpenCV fits it, all corners alike: where the adjustment starts."""
-
-    camera: Camera
-    views: tuple[BoardView, ...]
-    camera_from_boards: tuple[Pose, ...]
-    view_rms: tuple[float, ...]
-
-    def sightings(self, board: Chessboard) -> list[Sighting]:
-        flat = board.points()
-        return [
-            Sighting(view.name, view.corners, view.places(flat), pose)
-            for view, pose in zip(self.views, self.camera_from_boards, strict=True)
-        ]
-
-
-def _fit_without_outliers(
+def _fit_plainly(
     views: Sequence[BoardView], board: Chessboard, size: tuple[int, int]
-) -> tuple[_PlainFit, tuple[BoardView, ...]]:
-    """Fit, and fit again without the worst view while that stands out from the others."""
-    kept, left_out = list(views), list[BoardView]()
-    may_leave_out = min(int(_MAX_OUTLIERS * len(views)), len(views) - MIN_VIEWS)
-    fit = _fit(kept, board, size)
-    while len(left_out) < may_leave_out:
-        worst = int(np.argmax(fit.view_rms))
-        if fit.view_rms[worst] <= _OUTLIER * np.median(fit.view_rms):
-            break
-        left_out.append(kept.pop(worst))
-        fit = _fit(kept, board, size)
-    return fit, tuple(left_out)
+) -> tuple[Camera, list[Sighting], list[float]]:
+    """Fit a camera as OpenCV does, all corners alike: where the adjustment starts.
 
-
-def _fit(views: Sequence[BoardView], board: Chessboard, size: tuple[int, int]) -> _PlainFit:
+    Returns:
+        The camera, what each view shows, and the RMS of each view [px].
+    """
     flat = board.points()
     _, matrix, distortion, turns, shifts = cv2.calibrateCamera(
         *as_opencv(views, flat), size, None, None
@@ -203,22 +124,12 @@ def _fit(views: Sequence[BoardView], board: Chessboard, size: tuple[int, int]) -
         principal_point=(float(matrix[0, 2]), float(matrix[1, 2])),
         distortion=np.ravel(distortion)[:5].astype(np.float64),
     )
-    poses = tuple(_as_pose(turn, shift) for turn, shift in zip(turns, shifts, strict=True))
-    rms = tuple(
-        _rms(view.corners - _project(camera, turn, shift, view.places(flat)))
-        for view, turn, shift in zip(views, turns, shifts, strict=True)
-    )
-    return _PlainFit(camera, tuple(views), poses, rms)
-
-
-def _project(camera: Camera, turn: np.ndarray, shift: np.ndarray, points: Points) -> Pixels:
-    pixels, _ = cv2.projectPoints(points, turn, shift, camera.as_matrix(), camera.distortion)
-    return pixels.reshape(-1, 2)
-
-
-def _as_pose(turn: np.ndarray, shift: np.ndarray) -> Pose:
-    return Pose(cv2.Rodrigues(turn)[0].astype(np.float64), np.ravel(shift).astype(np.float64))
-
-
-def _rms(residuals: Pixels) -> float:
-    return float(np.sqrt(np.mean(np.sum(residuals**2, axis=1))))
+    sightings, rms = [], []
+    for view, turn, shift in zip(views, turns, shifts, strict=True):
+        points = view.places(flat)
+        seen, _ = cv2.projectPoints(points, turn, shift, matrix, distortion)
+        rms.append(rms_of(view.corners - seen.reshape(-1, 2)))
+        rotation = cv2.Rodrigues(turn)[0].astype(np.float64)
+        pose = Pose(rotation, np.ravel(shift).astype(np.float64))
+        sightings.append(Sighting(view.name, view.corners, points, pose))
+    return camera, sightings, rms

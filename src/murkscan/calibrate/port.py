@@ -1,56 +1,24 @@
 """A camera's port, and the index of the water, from boards seen through both."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-
-import numpy as np
+from dataclasses import replace
 
 from ..errors import NotEnoughData
-from ..types.arrays import Pixels
 from ..types.rig import Rig
 from ..types.rig_covariance import RigCovariance
-from .adjust import Adjustment, adjust
-from .board import Chessboard
-from .limits import refuse_open_parameters
-from .observed import index_of
-from .parameters import port_parameters
-from .seen_board import locate_seen_board
-from .sighting import Sighting
-from .tilt import refuse_parallel_boards
-from .view import BoardView
+from .adjust.observations import Sighting, index_of
+from .adjust.parameters import port_parameters
+from .adjust.priors import indices_apart, join
+from .adjust.solve import adjust
+from .board.chessboard import Chessboard
+from .board.pose import locate_seen_board
+from .board.tilt import refuse_parallel_boards
+from .board.view import BoardView
+from .calibration import MIN_VIEWS, Calibration, find_outlier
+from .words import refuse_open_parameters
 
-_MIN_VIEWS = 4
-_OUTLIER, _MAX_OUTLIERS = 3.0, 0.25
-"""A view whose RMS is so many times the median is left out; at most such a share of the views."""
-
-
-@dataclass(frozen=True, eq=False)
-class PortCalibration:
-    """A camera behind its port, and what both are worth."""
-
-    adjustment: Adjustment
-    """The rig, its covariance and the residuals."""
-    wanted: tuple[str, ...]
-    """The parameters that the photos were taken for; others are adjusted along."""
-    sightings: tuple[Sighting, ...]
-    """The views used, with the board where it was found to be."""
-    left_out: tuple[str, ...]
-    """Names of views left out, since they fit far worse than the others."""
-
-    @property
-    def rig(self) -> Rig:
-        """The rig with its new port and its covariance."""
-        return self.adjustment.rig
-
-    @property
-    def view_rms(self) -> tuple[float, ...]:
-        """Root mean square distance of a corner from its projection, of each view [px]."""
-        return tuple(_rms(residuals) for residuals in self.adjustment.corner_residuals)
-
-    @property
-    def rms(self) -> float:
-        """The same of all views [px]."""
-        return _rms(np.concatenate(self.adjustment.corner_residuals))
+_OUTLIER = 3.0
+"""A view whose RMS is so many times the median is left out."""
 
 
 def calibrate_port(
@@ -61,7 +29,7 @@ def calibrate_port(
     free: Sequence[str] = (),
     prior: RigCovariance | None = None,
     considered: RigCovariance | None = None,
-) -> PortCalibration:
+) -> Calibration:
     """Find how a camera's port stands, from views of a board through it.
 
     The camera is adjusted along, within its covariance. Where it has none it is taken as exact.
@@ -81,9 +49,9 @@ def calibrate_port(
         NotConverged: The adjustment came to no end.
     """
     used = [view for view in views if view.is_found]
-    if len(used) < _MIN_VIEWS:
+    if len(used) < MIN_VIEWS:
         raise NotEnoughData(
-            f"Need at least {_MIN_VIEWS} views of the {board} board through the port, better 15, "
+            f"Need at least {MIN_VIEWS} views of the {board} board through the port, better 15, "
             f"found it in {len(used)} of {len(views)}. Take photos of the whole board, near and "
             "far, each tilted another way."
         )
@@ -97,42 +65,16 @@ def calibrate_port(
     left_out = list[str]()
     while True:
         found = adjust(rig, sightings, names, prior=known, considered=apart)
-        worst = _worst(found)
-        if worst is None or len(left_out) >= int(_MAX_OUTLIERS * len(used)):
+        worst = find_outlier(found.view_rms, len(left_out), outlier=_OUTLIER)
+        if worst is None:
             break
         left_out.append(sightings.pop(worst).name)
     refuse_open_parameters(found)
-    return PortCalibration(found, wanted, tuple(sightings), tuple(left_out))
-
-
-def join(covariance: RigCovariance, prior: RigCovariance | None) -> RigCovariance:
-    """Put what is known beforehand in the place of what a covariance says of the same names."""
-    if prior is None:
-        return covariance
-    kept = [name for name in covariance.names if name not in prior.names]
-    names = (*kept, *prior.names)
-    matrix = covariance.select(names).matrix
-    matrix[:, len(kept) :] = matrix[len(kept) :] = 0.0
-    matrix[len(kept) :, len(kept) :] = prior.matrix
-    return RigCovariance(names, matrix)
-
-
-def indices_apart(known: RigCovariance, wanted: Sequence[str]) -> tuple[str, ...]:
-    """Name the water's index, unless it is wanted: it belongs to the place, not to the rig."""
-    return tuple(n for n in known.names if n.startswith("water.") and n not in wanted)
+    calibration = Calibration.of("port", found, wanted, sightings)
+    return replace(calibration, left_out=tuple(left_out))
 
 
 def _locate(view: BoardView, board: Chessboard, rig: Rig) -> Sighting:
-    pose = locate_seen_board(view.corners, board, rig.camera, index_of(rig))
-    return Sighting(view.name, view.corners, board.points(), pose)
-
-
-def _worst(found: Adjustment) -> int | None:
-    """Give the view that fits far worse than the others."""
-    rms = [_rms(residuals) for residuals in found.corner_residuals]
-    worst = int(np.argmax(rms))
-    return worst if rms[worst] > _OUTLIER * float(np.median(rms)) else None
-
-
-def _rms(residuals: Pixels) -> float:
-    return float(np.sqrt(np.mean(np.sum(residuals**2, axis=1))))
+    points = view.places(board.points())
+    pose = locate_seen_board(view.corners, points, rig.camera, index_of(rig))
+    return Sighting(view.name, view.corners, points, pose)

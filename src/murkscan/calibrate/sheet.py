@@ -7,14 +7,12 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from ..errors import Degenerate, NotEnoughData
-from ..geometry.intersect import intersect_rays_with_plane
 from ..geometry.plane_fit import PlaneFit, fit_plane
-from ..optics import back_project
-from ..types.arrays import Pixels, Points, Vector
+from ..types.arrays import Points, Vector
 from ..types.camera import Camera
 from ..types.laser import Laser
 from ..types.plane import Plane
-from ..types.pose import Pose
+from .board.stripe import StripeOnBoard
 
 MIN_PHOTOS = 2
 """Photos with a stripe below which there is no sheet: one shows a line only."""
@@ -29,22 +27,6 @@ place: 8 mm at 0.4 m, where a stripe is off by some 0.2 mm already."""
 _MAX_ANGLE_SIGMA = np.radians(1.0)
 """Standard deviation of the sheet's direction above which it is not determined [rad]: 9 mm at half
 a metre from the boards."""
-
-
-@dataclass(frozen=True, eq=False)
-class StripeOnBoard:
-    """The stripe in one photo, on the flat of the board."""
-
-    name: str
-    """Name of the photo."""
-    pixels: Pixels
-    """Stripe centres on the board [px]."""
-    camera_from_board: Pose
-    """Where the board was."""
-
-    def points(self, camera: Camera, index: float | None = None) -> Points:
-        """Give the stripe in the camera frame [m]: where each pixel's ray meets the board."""
-        return locate_on_board(camera, self.pixels, self.camera_from_board, index)
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,22 +69,19 @@ class SheetFit:
         return sum(int(mask.sum()) for mask in self.inliers)
 
     @property
+    def reach(self) -> tuple[float, float]:
+        """Nearest and farthest depth z at which the stripe was seen on a board [m]."""
+        depths = [
+            points[mask, 2].mean()
+            for points, mask in zip(self.points, self.inliers, strict=True)
+            if mask.any()
+        ]
+        return float(min(depths)), float(max(depths))
+
+    @property
     def view_rms(self) -> tuple[float, ...]:
         """Root mean square distance of all points of each photo from the sheet [m]."""
         return tuple(float(np.sqrt(np.mean(d**2))) for d in self.residuals)
-
-
-def locate_on_board(
-    camera: Camera, pixels: Pixels, camera_from_board: Pose, index: float | None = None
-) -> Points:
-    """Give where each pixel's ray meets the board, in the camera frame [m]; NaN where not.
-
-    Behind a port, `index` is that of what lies outside it.
-    """
-    board_plane = Plane.through(camera_from_board.translation, camera_from_board.rotation[:, 2])
-    if len(pixels) == 0:
-        return np.zeros((0, 3))
-    return intersect_rays_with_plane(back_project(camera, pixels, index), board_plane)
 
 
 def fit_sheet(

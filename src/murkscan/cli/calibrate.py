@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING
 from cyclopts import App
 
 from ..errors import InputError
+from .calibrate_result import print_result
 from .paths import PhotoPath
 from .progress import progress_bars
-from .words import print_table, say, say_verdict
 
 if TYPE_CHECKING:
     from ..calibrate import Chessboard
-    from ..survey.calibrate import CameraResult
 
 _LEAST_SQUARE, _MOST_SQUARE = 0.5, 1000.0
 """Sides of squares that a board can have [mm]; what lies outside was meant in another unit."""
@@ -79,10 +78,10 @@ def camera(
     chessboard = parse_board(board, square_mm)
     markers = None
     if charuco_marker_mm is not None:
-        from ..calibrate.charuco import Markers
+        from ..calibrate.board.charuco import Markers
 
         markers = Markers(charuco_marker_mm / 1e3, charuco_dictionary)
-    from ..survey.calibrate import calibrate_camera_from_photos
+    from ..survey.calibrate_camera import calibrate_camera_from_photos
 
     with progress_bars() as progress:
         result = calibrate_camera_from_photos(
@@ -93,7 +92,7 @@ def camera(
             markers=markers,
             progress=progress,
         )
-    _print_camera(result, rig)
+    print_result(result, rig)
 
 
 def parse_board(text: str, square_mm: float) -> "Chessboard":
@@ -111,45 +110,3 @@ def parse_board(text: str, square_mm: float) -> "Chessboard":
     from ..calibrate import Chessboard
 
     return Chessboard(int(match[1]), int(match[2]), square_mm / 1e3)
-
-
-def _print_camera(result: "CameraResult", rig: Path) -> None:
-    from ..calibrate import PARAMETERS, coverage_of
-
-    found = result.calibration
-    values = [
-        *found.camera.focal_length,
-        *found.camera.principal_point,
-        *found.camera.distortion.tolist(),
-    ]
-    print_table(
-        "Camera",
-        ("parameter", "value", "± 1σ", "unit"),
-        [
-            (name, f"{value:.4g}" if i > 3 else f"{value:.2f}", f"{sigma:.2g}", "px" * (i < 4))
-            for i, (name, value, sigma) in enumerate(
-                zip(PARAMETERS, values, found.sigma, strict=True)
-            )
-        ],
-    )
-    print_table(
-        "Views",
-        ("photo", "RMS [px]"),
-        [(v.name, f"{rms:.3f}") for v, rms in zip(found.views, found.view_rms, strict=True)],
-    )
-    say(
-        f"RMS {found.rms:.3f} px over {len(found.views)} views; corners in "
-        f"{coverage_of(found).share:.0%} of the picture."
-    )
-    _say_photos(result, used=len(found.views))
-    say_verdict(str(result.verdict), result.verdict.is_good)
-    say(f"Written to {rig}; see {result.page}, with every photo and its corners beside it.")
-
-
-def _say_photos(result: "CameraResult", *, used: int) -> None:
-    words = f"{used} of {result.num_photos} photos used"
-    if result.without_board:
-        words += f"; {len(result.without_board)} without a whole board"
-    say(words + ".")
-    for reason in result.skipped.values():
-        say(f"Skipped: {reason}")

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from ..errors import InputError
 from .calibrate import parse_board
 from .calibrate_laser import parse_margin
+from .calibrate_result import say_unused
 from .choices import ExtractorName, make_extractor
 from .options import read_numbers
 from .progress import progress_bars
@@ -114,6 +115,7 @@ def _place(text: str) -> list[float]:
 
 def _print_photos(result: "BoardCheckResult") -> None:
     found = result.check
+    say_verdict(str(result.verdict), result.verdict.is_good)
     rows: list[tuple[str, ...]] = [
         (name, f"{1e3 * distance:.0f}", f"{1e3 * square:.3f}", f"{square / found.known - 1:+.2%}")
         for distance, name, square in sorted(
@@ -127,17 +129,12 @@ def _print_photos(result: "BoardCheckResult") -> None:
         f"± {1e3 * found.sigma_independent:.4f} mm by how the photos scatter, ± {common} by the "
         "rig's covariance (1σ)."
     )
-    words = f"{len(found.names)} of {result.num_photos} photos used"
-    if result.without_line:
-        words += f"; {len(result.without_line)} show a board but no line on its paper"
-    say(words + ".")
-    for reason in result.skipped.values():
-        say(f"Skipped: {reason}")
-    say_verdict(str(result.verdict), result.verdict.is_good)
+    say_unused(result.unused, used=len(found.names))
 
 
 def _print_scan(result: "ScanCheckResult") -> None:
     length = result.length
+    say_verdict(str(result.verdict), result.verdict.is_good)
     rows: list[tuple[str, ...]] = [
         (name, *(f"{part:.4f}" for part in end.tolist()))
         for name, end in zip(("from", "to"), result.ends, strict=True)
@@ -148,4 +145,3 @@ def _print_scan(result: "ScanCheckResult") -> None:
         f"Length {1e3 * length.value:.3f} mm; ± {1e3 * length.sigma_independent:.3f} mm by the "
         f"noise of its ends, ± {common} by the rig's covariance (1σ)."
     )
-    say_verdict(str(result.verdict), result.verdict.is_good)

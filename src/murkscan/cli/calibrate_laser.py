@@ -6,16 +6,14 @@ from typing import TYPE_CHECKING, Literal
 
 from ..errors import InputError
 from .calibrate import parse_board
-from .calibrate_port import print_parameters, say_photos
+from .calibrate_result import print_result
 from .choices import ExtractorName, make_extractor
 from .options import read_numbers
 from .paths import PhotoPath, RigFile
 from .progress import progress_bars
-from .words import print_table, say, say_verdict
 
 if TYPE_CHECKING:
-    from ..calibrate import LaserCalibration, Margin
-    from ..survey.calibrate_laser import LaserResult
+    from ..calibrate import Margin
 
 
 def laser(
@@ -26,7 +24,7 @@ def laser(
     rig: RigFile,
     kind: Literal["plane", "fan"] = "plane",
     margin_mm: str | None = None,
-    laser: int = 0,
+    laser: str = "0",
     origin_sigma_mm: float = 2.0,
     port_tilt_sigma_deg: float = 1.0,
     port_distance_sigma_mm: float = 1.0,
@@ -54,7 +52,8 @@ def laser(
         How far the flat paper runs on beyond the squares, as LEFT,RIGHT,TOP,BOTTOM [mm]; one
         square on each side unless given.
     laser
-        Number of the laser that is new or replaced, from 0.
+        Number of the laser that is new or replaced, from 0; or several, such as 0,1, whose lines
+        are on the same photos. Lines of the rig's other lasers are passed over.
     origin_sigma_mm
         How well it is known beforehand where a fan behind a port starts [mm, 1σ].
     port_tilt_sigma_deg
@@ -89,13 +88,21 @@ def laser(
             chessboard,
             rig,
             margin=margin,
-            laser=laser,
+            laser=_parse_numbers(laser),
             fan=fan if kind == "fan" else None,
             index_sigma=index_sigma,
             extractor=make_extractor(extractor, ()),
             progress=progress,
         )
-    _print_laser(result, rig)
+    print_result(result, rig)
+
+
+def _parse_numbers(text: str) -> tuple[int, ...]:
+    """Read the numbers of --laser."""
+    parts = [part.strip() for part in text.split(",")]
+    if not all(part.isdigit() for part in parts) or len(set(parts)) < len(parts):
+        raise InputError(f"--laser {text!r} is no laser; give its number from 0, or several: 0,1.")
+    return tuple(sorted(int(part) for part in parts))
 
 
 def parse_margin(text: str) -> "Margin":
@@ -109,63 +116,3 @@ def parse_margin(text: str) -> "Margin":
     from ..calibrate import Margin
 
     return Margin(*(side / 1e3 for side in sides))
-
-
-def _print_laser(result: "LaserResult", rig: Path) -> None:
-    from ..calibrate.limits import most_influential
-    from ..types.laser import Laser
-
-    found = result.calibration
-    fit = found.fit
-    print_parameters(found.adjustment, f"Laser {found.number}")
-    n, d = fit.sheet.normal, fit.sheet.distance
-    baseline, angle = Laser(fit.sheet, found.laser.axis).as_baseline_angle()
-    print_table(
-        "Sheet",
-        ("what", "value"),
-        [
-            (
-                "equivalent plane",
-                f"{n[0]:+.6f} X {n[1]:+.6f} Y {n[2]:+.6f} Z {d * 1e3:+.3f} mm = 0",
-            ),
-            ("direction, ± 1σ", f"{math.degrees(fit.angle_sigma):.3f} degrees"),
-            ("axis", found.laser.axis),
-            ("equivalent b", f"{baseline * 1e3:.2f} mm"),
-            ("equivalent θ", f"{math.degrees(angle):.3f} degrees"),
-            *_point_rows(found),
-        ],
-    )
-    print_table(
-        "Photos",
-        ("photo", "points", "RMS [mm]"),
-        [
-            (s.name, str(len(s.pixels)), f"{rms * 1e3:.3f}")
-            for s, rms in zip(fit.stripes, fit.view_rms, strict=True)
-        ],
-    )
-    say(
-        f"RMS {fit.rms * 1e3:.3f} mm over {fit.num_inliers} of {fit.num_points} stripe points; "
-        f"{fit.num_points - fit.num_inliers} lay off the sheet and count less or not at all."
-    )
-    say(most_influential(found.adjustment, [s.name for s in found.sightings]))
-    say_photos(result, used=len(fit.stripes))
-    if result.without_stripe:
-        say(
-            f"{len(result.without_stripe)} photos show a board but no stripe on its paper; "
-            "--margin-mm says how far the paper runs on."
-        )
-    say_verdict(str(result.verdict), result.verdict.is_good)
-    say(f"Written to {rig}; see {result.page}, with every photo and its stripes beside it.")
-
-
-def _point_rows(found: "LaserCalibration") -> list[tuple[str, str]]:
-    """Tell how well a point is known near, in the middle and far, by the calibration alone."""
-    from ..calibrate.reach import point_sigma, reach_of
-
-    depths = reach_of(found.adjustment.camera_from_boards, found.sightings)
-    rows = []
-    for depth in depths:
-        sigma = point_sigma(found.rig, found.number, depth)
-        if math.isfinite(sigma):
-            rows.append((f"a point {depth * 1e3:.0f} mm away, ± 1σ", f"{sigma * 1e3:.3f} mm"))
-    return rows

@@ -7,14 +7,12 @@ from typing import TYPE_CHECKING, Literal
 
 from ..errors import InputError
 from .calibrate import parse_board
+from .calibrate_result import print_result
 from .paths import PhotoPath, RigFile
 from .progress import progress_bars
-from .words import print_table, say, say_verdict
 
 if TYPE_CHECKING:
-    from ..calibrate.adjust import Adjustment
-    from ..survey.calibrate_laser import LaserResult
-    from ..survey.calibrate_port import Measured, PortResult
+    from ..survey.calibrate_port import Measured
 
 _NUMBER = r"[0-9]*\.?[0-9]+"
 
@@ -68,7 +66,7 @@ def port(
         result = calibrate_port_from_photos(
             images, chessboard, rig, knowledge=knowledge, progress=progress
         )
-    _print_port(result, rig)
+    print_result(result, rig)
 
 
 def parse_measured(text: str) -> "Measured":
@@ -82,60 +80,6 @@ def parse_measured(text: str) -> "Measured":
     from ..survey.calibrate_port import Measured
 
     return Measured(float(match[1]) / 1e3, float(match[2]) / 1e3)
-
-
-def print_parameters(found: "Adjustment", title: str) -> None:
-    """Print each parameter's deviation, and how much the photos say of it."""
-    from ..calibrate.limits import as_read, strongest_pairs, value_of
-
-    sigma = found.rig.covariance.select(found.names).sigma
-    print_table(
-        title,
-        ("parameter", "value", "± 1σ", "from these photos"),
-        [
-            (name, value_of(found.rig, name), as_read(name, float(s)), f"{max(share, 0):.0%}")
-            for name, s, share in zip(found.names, sigma, found.worth.from_photos, strict=True)
-        ],
-    )
-    for pair in strongest_pairs(found.rig.covariance):
-        say(f"{pair.first} and {pair.second} go together: correlation {pair.correlation:+.3f}.")
-
-
-def say_photos(result: "PortResult | LaserResult", *, used: int) -> None:
-    """Say which photos were used, and which were not and why."""
-    words = f"{used} of {result.num_photos} photos used"
-    if result.without_board:
-        words += f"; without a whole board: {', '.join(result.without_board)}"
-    say(words + ".")
-    for reason in result.skipped.values():
-        say(f"Skipped: {reason}")
-
-
-def _print_port(result: "PortResult", rig: Path) -> None:
-    from ..calibrate.limits import most_influential
-    from ..calibrate.reach import reach_of, shape_sigma
-
-    found = result.calibration.adjustment
-    print_parameters(found, "Port")
-    names = [sighting.name for sighting in result.calibration.sightings]
-    print_table(
-        "Views",
-        ("photo", "RMS [px]"),
-        [(n, f"{rms:.3f}") for n, rms in zip(names, result.calibration.view_rms, strict=True)],
-    )
-    depths = reach_of(found.camera_from_boards, result.calibration.sightings)
-    print_table(
-        "Shapes",
-        ("distance", "± 1σ"),
-        [(f"{z * 1e3:.0f} mm", f"{shape_sigma(found.rig, z) * 1e3:.3f} mm") for z in depths],
-    )
-    say(most_influential(found, names))
-    say_photos(result, used=len(names))
-    say_verdict(str(result.verdict), result.verdict.is_good)
-    if result.lasers_to_redo:
-        numbers = ", ".join(map(str, result.lasers_to_redo))
-        say(f"Laser {numbers} was calibrated with the camera as it was; calibrate it again.")
-    say(f"Written to {rig}; see {result.page}, with every photo and its corners beside it.")
 
 
 def _check_sigma(sigma: float) -> float:

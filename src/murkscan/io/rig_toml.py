@@ -10,7 +10,6 @@ from tomlkit.items import AoT
 
 from ..errors import FormatError, InputError
 from ..types.laser import Laser
-from ..types.pose import Pose
 from ..types.rig import Rig
 from ..types.rig_covariance import RigCovariance
 from .atomic import replacing
@@ -113,27 +112,6 @@ def save_calibration(
     for word in step[:-1]:
         table = table.setdefault(word, tomlkit.table(True))
     table[step[-1]] = _lay_out(record)
-    _write(path, document)
-
-
-def save_mount(
-    path: Path, mount: Pose, covariance: RigCovariance, *, record: dict[str, Any]
-) -> None:
-    """Create or replace [mount] and the covariance; all else of the file stays.
-
-    Args:
-        path: The rig file.
-        mount: vehicle_from_camera.
-        covariance: Of all of the rig, the mount among it.
-        record: What [calibration.mount] shall say: date, views, residuals.
-
-    Raises:
-        FormatError: The file is no rig file.
-    """
-    document = _read(path)
-    document.setdefault("mount", tomlkit.table()).update(mount_table(mount))
-    _put_covariance(document, covariance)
-    document["calibration"]["mount"] = _lay_out(record)
     _write(path, document)
 
 

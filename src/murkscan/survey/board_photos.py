@@ -15,6 +15,8 @@ from ..types.arrays import ColourImage, Image
 
 _MAX_FROM_VIDEO = 100
 """Pictures taken out of a video, spread over it; neighbouring ones show the same."""
+_UNREAD = (".heic", ".heif", ".dng", ".cr2", ".cr3", ".nef", ".arw", ".raf", ".orf")
+"""Kinds of pictures that cameras and phones write and that are not read."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,26 +69,24 @@ class BoardPhotos:
         """Read the photos in order; those that cannot be read are noted and passed over.
 
         Raises:
-            InputError: A photo has another size than the first one.
             FormatError: None of them can be read.
         """
-        first: Photo | None = None
+        is_empty = True
         for photo in self._read_folder() if self.path.is_dir() else self._read_video():
-            first = first or photo
-            if photo.size != first.size:
-                raise InputError(
-                    f"{self.path / photo.name} is {photo.size[0]} x {photo.size[1]} px but "
-                    f"{first.name} is {first.size[0]} x {first.size[1]} px; photos of "
-                    "one camera have one size: remove what does not belong, never crop or resize."
-                )
+            is_empty = False
             yield photo
-        if first is None:
+        if is_empty:
             raise FormatError(
                 f"None of the {self.num_photos or 0} photos in {self.path} can be read; the first: "
                 f"{next(iter(self.skipped.values()), 'it holds no pictures')}"
             )
 
     def _read_folder(self) -> Iterator[Photo]:
+        for file in sorted(self.path.iterdir()):
+            if file.suffix.lower() in _UNREAD:
+                self.skipped[file.name] = (
+                    f"is of a kind that is not read ({file.suffix}): export PNG"
+                )
         for name in list_pictures(self.path):
             try:
                 yield Photo(name, read_colour(self.path / name))

@@ -1,9 +1,13 @@
 """The board in every photo of a calibration."""
 
-from ..calibrate.board import Chessboard
-from ..calibrate.charuco import Markers, find_charuco
-from ..calibrate.corners import find_board, suggest_board
-from ..calibrate.view import BoardView
+from collections import Counter
+
+import numpy as np
+
+from ..calibrate.board.charuco import Markers, find_charuco
+from ..calibrate.board.chessboard import Chessboard
+from ..calibrate.board.corners import find_board, suggest_board
+from ..calibrate.board.view import BoardView
 from ..errors import InputError, NotEnoughData
 from ..types.arrays import Image
 from .board_photos import BoardPhotos
@@ -21,7 +25,10 @@ def find_boards(
     size: tuple[int, int] | None = None,
     markers: Markers | None = None,
 ) -> tuple[list[BoardView], tuple[int, int]]:
-    """Look for the board in every photo; give the views, and the size of the photos.
+    """Look for the board in every photo.
+
+    Photos of another size than the rig's, or than most that show the board, are of another camera
+    and are passed over.
 
     Args:
         photos: The photos.
@@ -30,31 +37,46 @@ def find_boards(
         size: Width and height that the photos must have [px]; None for any.
         markers: The markers of a ChArUco board; None for a plain one.
 
+    Returns:
+        The view of each photo, with a reason where there is no board, and the photos' size.
+
     Raises:
-        InputError: The photos have another size, or differ in size.
+        InputError: All photos have another size than the rig's.
         FormatError: None of the photos can be read.
         NotEnoughData: The board is in none of them.
     """
-    views, seen, first = [], list[Image](), None
+    views, sizes, seen = list[BoardView](), list[tuple[int, int]](), list[Image]()
     for photo in photos:
-        first = first or photo
-        if size is not None and photo.size != size:
-            raise InputError(
-                f"{photos.path / photo.name} is {photo.size[0]} x {photo.size[1]} px but the rig's "
-                f"camera has {size[0]} x {size[1]}; give photos of this camera, never resized."
-            )
         grey = photo.as_grey()
         if markers is None:
             views.append(find_board(grey, board, name=photo.name))
         else:
             views.append(find_charuco(grey, board, markers, name=photo.name))
+        sizes.append(photo.size)
         if len(seen) < _SUGGEST_FROM:
             seen.append(grey)
         progress("find boards", len(views), photos.num_photos)
-    assert first is not None
+    found = [s for view, s in zip(views, sizes, strict=True) if view.is_found]
+    wanted = size or Counter(found or sizes).most_common(1)[0][0]
+    if wanted not in sizes:
+        raise InputError(
+            f"The photos in {photos.path} are {sizes[0][0]} x {sizes[0][1]} px but the rig's "
+            f"camera has {wanted[0]} x {wanted[1]}; give photos of this camera, never resized."
+        )
+    views = [
+        view if own == wanted else _of_another_camera(view, own, wanted)
+        for view, own in zip(views, sizes, strict=True)
+    ]
     if not any(view.is_found for view in views):
         raise NotEnoughData(_never_found(photos, board, len(views), seen, markers))
-    return views, first.size
+    return views, wanted
+
+
+def _of_another_camera(
+    view: BoardView, size: tuple[int, int], wanted: tuple[int, int]
+) -> BoardView:
+    reason = f"is {size[0]} x {size[1]} px, not {wanted[0]} x {wanted[1]} as this camera's photos"
+    return BoardView(view.name, np.zeros((0, 2)), reason=reason)
 
 
 def _never_found(
@@ -77,6 +99,6 @@ def _never_found(
             f"{other} board is there: use --board {other}; INNER corners count, not squares."
         )
     return (
-        f"None of the {num_photos} photos in {photos.path} shows a whole {board} board. Count its "
-        "INNER corners, where black squares touch; show all of it, closer, sharp and evenly lit."
+        f"None of the {num_photos} photos in {photos.path} shows a {board} board. Count its "
+        "INNER corners, where black squares touch; show it closer, sharp and evenly lit."
     )

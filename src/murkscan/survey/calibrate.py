@@ -1,113 +1,172 @@
-"""Calibrate a camera and its lasers from photos: find, fit, judge, save, draw."""
+"""The way every calibration goes: look for boards, adjust, judge, save, draw, write the page."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from functools import partial
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ..calibrate.board import Chessboard
-from ..calibrate.camera import CameraCalibration, calibrate_camera
-from ..calibrate.charuco import Markers
-from ..calibrate.story import Story
-from ..calibrate.verdict import CalibrationVerdict, judge_camera
+from ..calibrate.board.charuco import Markers
+from ..calibrate.board.chessboard import Chessboard
+from ..calibrate.board.stripe import StripeOnBoard
+from ..calibrate.board.view import BoardView
+from ..calibrate.calibration import Calibration
+from ..calibrate.page import write_page
+from ..calibrate.verdict import CalibrationVerdict, judge
 from ..errors import EstimationError, InputError
-from ..io.rig_toml import read_tables, save_calibration
+from ..io.atomic import replacing
+from ..io.rig_toml import parse_rig, read_tables, save_calibration
 from .board_photos import BoardPhotos
 from .board_views import find_boards
-from .calibrate_drawing import draw_boards, write_page
-from .calibration_record import record_camera, record_setting
-from .progress import Progress, silent
+from .calibrate_drawing import SUFFIX, draw_photos
+from .calibration_record import record_step
+from .calibration_state import snapshot
+from .progress import Progress
 
 
 @dataclass(frozen=True, eq=False)
-class CameraResult:
-    """What calibrating a camera gave."""
+class CalibrationResult:
+    """What a calibration gave."""
 
-    calibration: CameraCalibration
-    """The camera and what it is worth."""
+    calibration: Calibration
+    """What was found and how sure it is."""
     verdict: CalibrationVerdict
     """The same in plain words."""
     num_photos: int
     """Photos that could be read."""
-    without_board: tuple[str, ...]
-    """Photos in which the board was not found."""
-    skipped: Mapping[str, str]
-    """Photos that could not be read, and why."""
+    unused: Mapping[str, str]
+    """Photos that were not used, and why."""
     pictures: Path
-    """Folder of the photos with their corners drawn."""
+    """Folder of the photos with what was found drawn over them."""
     page: Path
     """The page that shows all of it."""
+    remarks: tuple[str, ...] = ()
+    """What else is to be said, such as what must be calibrated again."""
 
 
-def calibrate_camera_from_photos(
-    path: Path,
-    board: Chessboard,
-    rig_path: Path,
-    *,
-    wavelength: float = 532e-9,
-    markers: Markers | None = None,
-    progress: Progress = silent,
-) -> CameraResult:
-    """Calibrate a camera and write it to a rig file; the rest of the file stays.
+@dataclass(eq=False)
+class BoardSession:
+    """The photos of one calibration, and what was found in them so far."""
 
-    Args:
-        path: A folder of photos of the board, or a video.
-        board: The board.
-        rig_path: The rig file; made where it is missing.
-        wavelength: Of the laser [m]; written where the rig file has none.
-        markers: The markers of a ChArUco board, of which a part is enough; None for a plain one.
-        progress: Told of each photo.
+    photos: BoardPhotos
+    board: Chessboard
+    rig_path: Path
+    folder: Path
+    """Where the drawings and the page go."""
+    tables: dict[str, Any]
+    """The rig file as it was before."""
+    progress: Progress
+    views: list[BoardView] = field(default_factory=list)
+    size: tuple[int, int] = (0, 0)
+    """Width and height of the photos [px]."""
+    stripes: Sequence[StripeOnBoard] = ()
+    unused: dict[str, str] = field(default_factory=dict)
+    """Photos that are not used, and why."""
 
-    Raises:
-        InputError: The rig's camera has a port, there are no photos, they differ in size, or they
-            lie where the drawings go.
-        FormatError: None of the photos can be read, or the rig file is none.
-        NotEnoughData: The board was found in fewer than four photos.
-        Degenerate: The photos do not determine the camera.
-    """
-    tables = _read_without_port(rig_path)
-    photos, folder = open_photos(path, rig_path, "camera")
-    views, size = find_boards(photos, board, progress, markers=markers)
-    draw = partial(draw_boards, photos, views, folder, board=board, progress=progress)
-    try:
-        calibration = calibrate_camera(views, board, size)
-    except EstimationError as error:
-        draw(residuals={})
-        raise type(error)(f"{error} The photos with their corners lie in {folder}.") from error
-    verdict = judge_camera(calibration)
-    record = record_setting(board, len(views), tables) | record_camera(calibration, verdict)
-    found = replace(calibration.rig, wavelength=wavelength)
-    save_calibration(rig_path, found, ["camera"], record=record)
-    residuals = zip((view.name for view in calibration.views), calibration.residuals, strict=True)
-    left_out = tuple(view.name for view in calibration.left_out)
-    draw(residuals=dict(residuals), left_out=left_out)
-    without = tuple(view.name for view in views if not view.is_found)
-    adjusted = calibration.adjustment
-    story = Story("Camera", adjusted, calibration.sightings(board), verdict, without)
-    page = write_page(folder, story)
-    return CameraResult(calibration, verdict, len(views), without, photos.skipped, folder, page)
+    @classmethod
+    def open(
+        cls, path: Path, board: Chessboard, rig_path: Path, name: str,
+        *, tables: dict[str, Any], progress: Progress,
+    ) -> "BoardSession":  # fmt: skip
+        """Open the photos; `name` is the folder beside the rig file that the drawings go to.
 
+        Raises:
+            InputError: There are no photos, or they lie where the drawings go.
+        """
+        folder = rig_path.parent / "calibrate" / name
+        if path.resolve().is_relative_to(folder.resolve()):
+            raise InputError(
+                f"The photos {path} lie in {folder}, where the drawings of this calibration go; "
+                "move them to another folder."
+            )
+        return cls(BoardPhotos.open(path), board, rig_path, folder, tables, progress)
 
-def open_photos(path: Path, rig_path: Path, name: str) -> tuple[BoardPhotos, Path]:
-    """Open the photos; give them, and the folder that the drawings of this calibration go to."""
-    folder = rig_path.parent / "calibrate" / name
-    if path.resolve().is_relative_to(folder.resolve()):
-        raise InputError(
-            f"The photos {path} lie in {folder}, where the drawings of this calibration go; move "
-            "them to another folder."
+    def find_boards(
+        self, *, size: tuple[int, int] | None = None, markers: Markers | None = None
+    ) -> list[BoardView]:
+        """Look for the board in every photo; of `size` [px], where the rig has one."""
+        self.views, self.size = find_boards(
+            self.photos, self.board, self.progress, size=size, markers=markers
         )
-    return BoardPhotos.open(path), folder
+        self.unused |= self.photos.skipped
+        self.unused |= {view.name: view.reason for view in self.views if not view.is_found}
+        return self.views
 
+    def solve(self, adjust: Callable[[], Calibration], hint: str = "") -> Calibration:
+        """Adjust; where there is no answer, the photos are drawn, and the error says where.
 
-def _read_without_port(rig_path: Path) -> dict[str, Any]:
-    """Read the tables of a rig file, none where it is missing; refuse a camera behind a port."""
-    tables = read_tables(rig_path) if rig_path.exists() else {}
-    camera = tables.get("camera")
-    if isinstance(camera, dict) and "port" in camera:
-        raise InputError(
-            f"The camera of {rig_path} has a port, and a camera is calibrated in air without one; "
-            "take [camera.port] and [water] out, photograph in air, and put them back. Boards seen "
-            "through the port are for `murkscan calibrate port`."
+        Args:
+            adjust: Adjusts what was found.
+            hint: What may explain an error, to be said with it.
+        """
+        try:
+            return adjust()
+        except EstimationError as error:
+            self._draw(None)
+            raise type(error)(
+                f"{error}{hint} The photos with what was found in them lie in {self.folder}."
+            ) from error
+
+    def finish(
+        self, calibration: Calibration, step: Sequence[str], *, title: str, keep_water: bool = True
+    ) -> CalibrationResult:
+        """Judge, write the rig file, draw the photos and write the page.
+
+        Args:
+            calibration: What was found.
+            step: Where in [calibration] its record goes, such as ("laser", "0").
+            title: What the page is called.
+            keep_water: Whether [water] stays as it is.
+        """
+        self.unused |= dict.fromkeys(calibration.left_out, "fits far worse than the others")
+        verdict, remarks = judge(calibration), self._say_what_lost_its_covariance(calibration)
+        record = record_step(calibration, verdict, self.board, len(self.views), self.tables)
+        record["unused"] = self.unused
+        if calibration.step in ("port", "laser"):
+            record["before"] = snapshot(self.tables, lasers=calibration.lasers)
+        save_calibration(self.rig_path, calibration.rig, step, record=record,
+                         lasers=_moved(calibration), keep_water=keep_water)  # fmt: skip
+        self._draw(calibration)
+        page = self.folder / "index.html"
+        with replacing(page) as aside:
+            text = write_page(calibration, verdict, self.unused, title=title, suffix=SUFFIX)
+            aside.write_text(text, "utf-8")
+        return CalibrationResult(
+            calibration, verdict, len(self.views), self.unused, self.folder, page, remarks
         )
-    return tables
+
+    def _say_what_lost_its_covariance(self, calibration: Calibration) -> tuple[str, ...]:
+        """Name the parts of the rig that were calibrated with the camera as it was before."""
+        if "camera" not in self.tables:
+            return ()
+        before = parse_rig(read_tables(self.rig_path), name=str(self.rig_path)).covariance
+        after = calibration.rig.covariance.names
+        lost = [part for part in parts_of(before.names) if part not in parts_of(after)]
+        return tuple(
+            f"The {part} was calibrated with the camera as it was; calibrate it again."
+            for part in lost
+        )
+
+    def _draw(self, calibration: Calibration | None) -> None:
+        draw_photos(
+            self.photos, self.views, self.folder, board=self.board, stripes=self.stripes,
+            calibration=calibration, unused=self.unused, progress=self.progress,
+        )  # fmt: skip
+
+
+def parts_of(names: Sequence[str]) -> list[str]:
+    """Name the parts of a rig whose parameters these are: port, laser 0, mount."""
+    words = {"camera.port": "port", "mount": "mount"}
+    words |= {f"laser[{number}]": f"laser {number}" for number in range(len(names))}
+    return [
+        part for key, part in words.items() if any(name.startswith(f"{key}.") for name in names)
+    ]
+
+
+def _moved(calibration: Calibration) -> dict[int, Any]:
+    """List the lasers that are new, or moved along because their errors go together."""
+    rig = calibration.rig
+    return {
+        number: laser
+        for number, laser in enumerate(rig.lasers)
+        if any(name.startswith(f"laser[{number}]") for name in rig.covariance.names)
+    }

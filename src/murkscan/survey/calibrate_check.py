@@ -9,9 +9,8 @@ from jaxtyping import Float
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
-from ..calibrate.board import Chessboard, Margin
-from ..calibrate.known_length import BoardCheck, LinedBoard, check_on_boards
-from ..calibrate.length_verdict import judge_length
+from ..calibrate.board.chessboard import Chessboard, Margin
+from ..calibrate.check import BoardCheck, LinedBoard, check_on_boards, judge_length
 from ..calibrate.verdict import CalibrationVerdict
 from ..errors import InputError
 from ..extract import AbstractExtractor, GrayGravity
@@ -43,10 +42,8 @@ class BoardCheckResult:
     """The same in plain words."""
     num_photos: int
     """Photos that could be read."""
-    without_line: tuple[str, ...]
-    """Photos with a board but no line on its paper."""
-    skipped: Mapping[str, str]
-    """Photos that could not be read, and why."""
+    unused: Mapping[str, str]
+    """Photos that were not used, and why."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,17 +93,17 @@ def check_on_photos(
     views, _ = find_boards(photos, board, progress, size=rig.camera.size)
     margin = margin or Margin(board.square, board.square, board.square, board.square)
     finder = StripeFinder(photos, views, board, margin, rig, extractor or GrayGravity())
-    corners = {view.name: view.corners for view in views}
+    by_name = {view.name: view for view in views}
     lined = [
-        LinedBoard(stripe.name, corners[stripe.name], stripe.pixels)
-        for stripe in finder.find(progress)
+        LinedBoard(by_name[stripe.name], stripe.pixels) for stripe in finder.find([laser], progress)
     ]
     check = check_on_boards(lined, board, rig, laser)
     verdict = judge_length(
         check.measured, check.known, check.sigma, is_common_known=check.sigma_common is not None
     )
-    without = tuple(photo.name for photo in lined if len(photo.stripe) == 0)
-    return BoardCheckResult(check, verdict, len(views), without, photos.skipped)
+    unused = photos.skipped | finder.reasons
+    unused |= {view.name: view.reason for view in views if not view.is_found}
+    return BoardCheckResult(check, verdict, len(views), unused)
 
 
 def check_in_scan(

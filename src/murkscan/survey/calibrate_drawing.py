@@ -5,107 +5,77 @@ from pathlib import Path
 
 import numpy as np
 
-from ..calibrate.board import Chessboard, Margin
-from ..calibrate.drawing import draw_board, draw_stripe_on_board, project_outline
-from ..calibrate.sheet import SheetFit, StripeOnBoard
-from ..calibrate.story import Story, write_story
-from ..calibrate.view import BoardView
-from ..io.atomic import replacing
+from ..calibrate.adjust.solve import rms_of
+from ..calibrate.board.chessboard import Chessboard
+from ..calibrate.board.drawing import draw_photo
+from ..calibrate.board.stripe import StripeOnBoard
+from ..calibrate.board.view import BoardView
+from ..calibrate.calibration import Calibration
+from ..calibrate.laser import sheet_of
+from ..calibrate.mount import circles_of
 from ..io.images import write_image
-from ..optics import refractive_index
-from ..types.arrays import Pixels
-from ..types.rig import Rig
+from ..types.arrays import Pixels, Scalars
 from .board_photos import BoardPhotos
 from .progress import Progress
 
 SUFFIX = ".found.jpg"
 """Ends the names of our drawings, so that nothing else is ever taken for one."""
-_SHEET_TOLERANCE = 2e-3
-"""Distance from the sheet at which a stripe point is drawn red [m], where the RMS is lower."""
 
 
-def draw_boards(
+def draw_photos(
     photos: BoardPhotos,
     views: Sequence[BoardView],
     folder: Path,
     *,
     board: Chessboard,
-    residuals: Mapping[str, Pixels],
-    left_out: Sequence[str] = (),
+    stripes: Sequence[StripeOnBoard],
+    calibration: Calibration | None,
+    unused: Mapping[str, str],
     progress: Progress,
 ) -> None:
-    """Draw the corners of every photo, with residuals [px] where its name has some."""
-    _clear(folder)
-    none = np.zeros((0, 2))
+    """Draw every photo: its corners and stripes, what is left over, and why it is not used."""
+    for file in folder.glob(f"*{SUFFIX}"):
+        file.unlink()  # what an earlier calibration drew would be taken for this one's
+    residuals, notes = _residuals(calibration)
+    distances = _distances(calibration)
+    nothing = np.zeros(0)
     for number, (photo, view) in enumerate(zip(photos, views, strict=True)):
-        off, note = residuals.get(view.name, none), f"{view.name}: no {board} board found"
-        if view.is_found:
-            note = f"{view.name}: {board} board"
-        if view.name in left_out:
-            note += ", LEFT OUT: fits far worse than the others"
-        if len(off):
-            note += f", RMS {np.sqrt(np.mean(np.sum(off**2, axis=1))):.2f} px"
-        picture = draw_board(photo.image, view, board, off, note)
+        note = f"{view.name}: {notes.get(view.name, '')}"
+        if view.name in unused:
+            note = f"{view.name} NOT USED: {unused[view.name]}"
+        mine = [stripe for stripe in stripes if stripe.name == view.name and len(stripe.pixels)]
+        off = [distances.get((s.name, s.laser), np.zeros(len(s.pixels))) for s in mine]
+        picture = draw_photo(
+            photo.image, view, board, note,
+            residuals=residuals.get(view.name, np.zeros((0, 2))),
+            stripe=np.concatenate([np.zeros((0, 2)), *(s.pixels for s in mine)]),
+            distances=np.concatenate([nothing, *off]),
+        )  # fmt: skip
         write_image(folder / f"{view.name}{SUFFIX}", picture)
         progress("draw", number + 1, len(views))
 
 
-def draw_stripes(
-    photos: BoardPhotos,
-    stripes: Sequence[StripeOnBoard],
-    folder: Path,
-    *,
-    board: Chessboard,
-    margin: Margin,
-    rig: Rig,
-    fit: SheetFit | None,
-    progress: Progress,
-) -> None:
-    """Draw the stripe points of every photo with a board, coloured by residual."""
-    _clear(folder)
-    found = {stripe.name: stripe for stripe in stripes}
-    used = {} if fit is None else _number(fit.stripes)
-    index = refractive_index(rig.water, rig.wavelength)
-    done = 0
-    for photo in photos:
-        if photo.name not in found:
-            continue
-        stripe = found[photo.name]
-        note = (
-            f"{stripe.name}: {len(stripe.pixels)} points"
-            if len(stripe.pixels)
-            else (f"{stripe.name}: no stripe on the board's paper")
-        )
-        residuals = np.zeros(len(stripe.pixels))
-        if fit is not None and stripe.name in used:
-            residuals = fit.residuals[used[stripe.name]]
-            note += f", RMS {fit.view_rms[used[stripe.name]] * 1e3:.2f} mm"
-        picture = draw_stripe_on_board(
-            photo.image,
-            stripe.pixels,
-            residuals,
-            note,
-            outline=project_outline(board, margin, rig.camera, stripe.camera_from_board, index),
-            tolerance=_SHEET_TOLERANCE,
-        )
-        write_image(folder / f"{stripe.name}{SUFFIX}", picture)
-        done += 1
-        progress("draw", done, len(stripes))
+def _residuals(calibration: Calibration | None) -> tuple[dict[str, Pixels], dict[str, str]]:
+    """Take each used photo's residuals [px], and say in words how well it fits."""
+    if calibration is None:
+        return {}, {}
+    names = [sighting.name for sighting in calibration.sightings]
+    residuals = calibration.adjustment.corner_residuals
+    words = [f"RMS {rms_of(off):.2f} px" for off in residuals]
+    if calibration.logged is not None:
+        circles = circles_of(calibration)
+        residuals = circles.residuals
+        words = [f"closes to {closure * 1e3:.2f} mm" for closure in circles.closures.tolist()]
+    return dict(zip(names, residuals, strict=True)), dict(zip(names, words, strict=True))
 
 
-def write_page(folder: Path, story: Story) -> Path:
-    """Write the page of a calibration beside its drawings; give where it is."""
-    path = folder / "index.html"
-    with replacing(path) as aside:
-        aside.write_text(write_story(story, suffix=SUFFIX), "utf-8")
-    return path
-
-
-def _number(items: Sequence[StripeOnBoard]) -> dict[str, int]:
-    return {item.name: number for number, item in enumerate(items)}
-
-
-def _clear(folder: Path) -> None:
-    """Remove what an earlier calibration drew: it would be taken for this one's."""
-    for file in folder.glob(f"*{SUFFIX}"):
-        file.unlink()
+def _distances(calibration: Calibration | None) -> dict[tuple[str, int], Scalars]:
+    """Take how far each photo's stripe points are from their laser's sheet [m]."""
+    if calibration is None:
+        return {}
+    return {
+        (stripe.name, stripe.laser): distances
+        for number in calibration.lasers
+        for fit in [sheet_of(calibration, number)]
+        for stripe, distances in zip(fit.stripes, fit.residuals, strict=True)
+    }

@@ -1,33 +1,20 @@
 """Calibrate where the camera sits on its vehicle, from photos of a board and a log of poses."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from ..calibrate.board import Chessboard
-from ..calibrate.drawing import draw_board
-from ..calibrate.hand_eye import MeasuredPlace, MountCalibration, calibrate_mount
-from ..calibrate.mount_verdict import judge_mount
-from ..calibrate.verdict import CalibrationVerdict
-from ..calibrate.view import BoardView
+from ..calibrate.board.chessboard import Chessboard
+from ..calibrate.mount import MeasuredPlace, calibrate_mount
 from ..capture import open_recording
 from ..capture.folder import list_pictures
-from ..errors import EstimationError, InputError, MissingResult
-from ..io.images import write_image
-from ..io.rig_toml import parse_rig, read_tables, save_mount
-from ..types.arrays import Pixels
+from ..errors import InputError, MissingResult
+from ..io.rig_toml import parse_rig, read_tables
 from ..types.rig import Rig
 from ..types.trajectory import Trajectory
-from .board_photos import BoardPhotos
-from .board_views import find_boards
-from .calibration_record import record_setting
-from .mount_record import record_mount
+from .calibrate import BoardSession, CalibrationResult
 from .progress import Progress, silent
-
-_SUFFIX = ".found.jpg"
-"""Ends the names of our drawings, so that nothing else is ever taken for one."""
 
 
 @dataclass(frozen=True)
@@ -42,26 +29,6 @@ class PhotoClock:
     """Added to recording times [s]."""
 
 
-@dataclass(frozen=True, eq=False)
-class MountResult:
-    """What calibrating a mount gave."""
-
-    calibration: MountCalibration
-    """The mount and what it is worth."""
-    verdict: CalibrationVerdict
-    """The same in plain words."""
-    num_photos: int
-    """Photos that could be read."""
-    without_board: tuple[str, ...]
-    """Photos in which the board was not found."""
-    skipped: Mapping[str, str]
-    """Photos that could not be read, and why."""
-    pictures: Path
-    """Folder of the photos with their corners drawn."""
-    time_offset: float | None
-    """The offset to scan with [s]: the one given and the one found; None where none was found."""
-
-
 def calibrate_mount_from_photos(
     path: Path,
     board: Chessboard,
@@ -71,7 +38,7 @@ def calibrate_mount_from_photos(
     clock: PhotoClock | None = None,
     measured: MeasuredPlace | None = None,
     progress: Progress = silent,
-) -> MountResult:
+) -> CalibrationResult:
     """Calibrate the mount and write it to a rig file; the rest of the file stays.
 
     Args:
@@ -100,30 +67,31 @@ def calibrate_mount_from_photos(
             "--rig."
         )
     rig = parse_rig(tables, name=str(rig_path))
-    photos, folder = BoardPhotos.open(path), rig_path.parent / "calibrate" / "mount"
-    times_by_name = _read_times(path, rig, clock)
-    views, _ = find_boards(photos, board, progress, size=rig.camera.size)
-    views = [view for view in views if view.name in times_by_name]
-    times = np.array([times_by_name[view.name] for view in views])
-    try:
-        calibration = calibrate_mount(views, times, log, board, rig, measured=measured)
-    except EstimationError:
-        _draw(photos, views, board, folder, None, progress)
-        raise
-    verdict = judge_mount(calibration)
-    record = record_setting(board, len(views), tables) | record_mount(calibration, verdict)
-    save_mount(rig_path, calibration.vehicle_from_camera, calibration.rig_covariance, record=record)
-    _draw(photos, views, board, folder, calibration, progress)
-    found = calibration.clock_offset
-    return MountResult(
-        calibration=calibration,
-        verdict=verdict,
-        num_photos=len(views),
-        without_board=tuple(view.name for view in views if not view.is_found),
-        skipped=photos.skipped,
-        pictures=folder,
-        time_offset=None if found is None else found + clock.time_offset,
+    session = BoardSession.open(path, board, rig_path, "mount", tables=tables, progress=progress)
+    times = _read_times(path, rig, clock)
+    views = session.find_boards(size=rig.camera.size)
+    timed = [view for view in views if view.name in times]
+    session.unused |= {view.name: "has no time" for view in views if view.name not in times}
+    session.unused |= {
+        view.name: "shows a board that the picture cuts off, so that it is not known which corners"
+        for view in timed
+        if not view.is_placed
+    }
+    moments = np.array([times[view.name] for view in timed])
+    found = session.solve(
+        lambda: calibrate_mount(timed, moments, log, board, rig, measured=measured)
     )
+    result = session.finish(found, ["mount"], title="Mount")
+    stand = found.adjustment.stand
+    if found.clock_sigma is None or stand is None:
+        remark = "The clock's offset is not determined: the vehicle stood still in the photos."
+    else:
+        offset = stand.clock_offset + clock.time_offset
+        remark = (
+            f"The clock: add {stand.clock_offset:+.4f} ± {found.clock_sigma:.2g} s to the photos' "
+            f"times, so scan with --time-offset-s {offset:.4f}."
+        )
+    return replace(result, remarks=(remark, *result.remarks))
 
 
 def _read_times(path: Path, rig: Rig, clock: PhotoClock) -> dict[str, float]:
@@ -141,32 +109,3 @@ def _read_times(path: Path, rig: Rig, clock: PhotoClock) -> dict[str, float]:
         )
         for frame in recording.frames()
     }
-
-
-def _draw(
-    photos: BoardPhotos,
-    views: list[BoardView],
-    board: Chessboard,
-    folder: Path,
-    calibration: MountCalibration | None,
-    progress: Progress,
-) -> None:
-    """Draw the corners of every photo, with residuals where there is a calibration."""
-    for file in folder.glob(f"*{_SUFFIX}"):
-        file.unlink()
-    by_name = {view.name: view for view in views}
-    used = [] if calibration is None else [view.name for view in calibration.views]
-    shown = (photo for photo in photos if photo.name in by_name)
-    for done, photo in enumerate(shown):
-        view = by_name[photo.name]
-        residuals: Pixels = np.zeros((0, 2))
-        note = f"{view.name}: {board} board" if view.is_found else f"{view.name}: no {board} board"
-        if calibration is not None and view.name in used:
-            number = used.index(view.name)
-            residuals = calibration.residuals[number]
-            note += f", closes to {calibration.closures[number] * 1e3:.2f} mm"
-        elif calibration is not None and view.is_found:
-            note += ", LEFT OUT: fits far worse than the others"
-        picture = draw_board(photo.image, view, board, residuals, note)
-        write_image(folder / f"{view.name}{_SUFFIX}", picture)
-        progress("draw", done + 1, len(views))

@@ -1,29 +1,22 @@
-"""Calibrate a camera's port from photos of a board under water: find, fit, judge, save, draw."""
+"""Calibrate a camera's port from photos of a board under water."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from ..calibrate.board import Chessboard
-from ..calibrate.parameters import INTRINSICS
-from ..calibrate.port import PortCalibration, calibrate_port
-from ..calibrate.port_verdict import judge_port
-from ..calibrate.story import Story
-from ..calibrate.verdict import CalibrationVerdict
-from ..calibrate.view import BoardView
-from ..errors import EstimationError, InputError, MissingResult
-from ..io.rig_toml import parse_rig, read_tables, save_calibration
+from ..calibrate.adjust.parameters import INTRINSICS
+from ..calibrate.board.chessboard import Chessboard
+from ..calibrate.board.view import BoardView
+from ..calibrate.calibration import Calibration
+from ..calibrate.port import calibrate_port
+from ..errors import InputError, MissingResult
+from ..io.rig_toml import parse_rig, read_tables
 from ..types.port import FlatPort
 from ..types.rig import Rig
 from ..types.rig_covariance import RigCovariance
-from .board_views import find_boards
-from .calibrate import open_photos
-from .calibrate_drawing import draw_boards, write_page
-from .calibration_record import record_adjustment, record_setting
-from .calibration_state import snapshot, tables_before
+from .calibrate import BoardSession, CalibrationResult
+from .calibration_state import tables_before
 from .progress import Progress, silent
 
 _LEAST, _MOST = 5e-4, 0.5
@@ -53,28 +46,6 @@ class PortKnowledge:
     """Whether to find the camera too, though it was not calibrated in air."""
 
 
-@dataclass(frozen=True, eq=False)
-class PortResult:
-    """What calibrating a port gave."""
-
-    calibration: PortCalibration
-    """The port and what it is worth."""
-    verdict: CalibrationVerdict
-    """The same in plain words."""
-    num_photos: int
-    """Photos that could be read."""
-    without_board: tuple[str, ...]
-    """Photos in which the board was not found."""
-    skipped: Mapping[str, str]
-    """Photos that could not be read, and why."""
-    pictures: Path
-    """Folder of the photos with their corners drawn."""
-    page: Path
-    """The page that shows all of it."""
-    lasers_to_redo: tuple[int, ...]
-    """Lasers that were calibrated with the camera as it was."""
-
-
 def calibrate_port_from_photos(
     path: Path,
     board: Chessboard,
@@ -82,7 +53,7 @@ def calibrate_port_from_photos(
     *,
     knowledge: PortKnowledge | None = None,
     progress: Progress = silent,
-) -> PortResult:
+) -> CalibrationResult:
     """Calibrate a camera's port and write it to the rig file; the rest of the file stays.
 
     The camera is adjusted along within its covariance, and written too. Done again, it starts from
@@ -107,49 +78,17 @@ def calibrate_port_from_photos(
     knowledge = knowledge or PortKnowledge()
     tables = tables_before(read_tables(rig_path), ["port"], name=str(rig_path))
     rig = _with_port(parse_rig(tables, name=str(rig_path)), rig_path, knowledge)
-    photos, folder = open_photos(path, rig_path, "port")
-    views, _ = find_boards(photos, board, progress, size=rig.camera.size)
-    draw = partial(draw_boards, photos, views, folder, board=board, progress=progress)
-    try:
-        calibration = _fit(views, board, rig, knowledge)
-    except EstimationError as error:
-        draw(residuals={})
-        raise type(error)(f"{error} The photos with their corners lie in {folder}.") from error
-    verdict = judge_port(calibration)
-    record = record_setting(board, len(views), tables) | record_adjustment(
-        calibration.adjustment, calibration.left_out, verdict
-    )
-    redo = _lasers_in(parse_rig(read_tables(rig_path), name=str(rig_path)).covariance)
-    save_calibration(
-        rig_path, calibration.rig, ["port"],
-        record=record | {"before": snapshot(tables)}, keep_water=not knowledge.is_index_free,
-    )  # fmt: skip
-    residuals = dict(
-        zip(
-            (sighting.name for sighting in calibration.sightings),
-            calibration.adjustment.corner_residuals,
-            strict=True,
-        )
-    )
-    draw(residuals=residuals, left_out=calibration.left_out)
-    without = tuple(view.name for view in views if not view.is_found)
-    adjusted = calibration.adjustment
-    story = Story("Camera port", adjusted, calibration.sightings, verdict, without)
-    return PortResult(
-        calibration=calibration,
-        verdict=verdict,
-        num_photos=len(views),
-        without_board=without,
-        skipped=photos.skipped,
-        pictures=folder,
-        page=write_page(folder, story),
-        lasers_to_redo=redo,
+    session = BoardSession.open(path, board, rig_path, "port", tables=tables, progress=progress)
+    views = session.find_boards(size=rig.camera.size)
+    found = session.solve(lambda: _fit(views, board, rig, knowledge))
+    return session.finish(
+        found, ["port"], title="Camera port", keep_water=not knowledge.is_index_free
     )
 
 
 def _fit(
     views: list[BoardView], board: Chessboard, rig: Rig, knowledge: PortKnowledge
-) -> PortCalibration:
+) -> Calibration:
     distance = knowledge.distance
     free = (
         *(INTRINSICS if knowledge.is_camera_free else ()),
@@ -190,10 +129,3 @@ def _with_port(rig: Rig, rig_path: Path, knowledge: PortKnowledge) -> Rig:
             "camera.port.distance_mm or --distance-mm."
         )
     return replace(rig, camera=replace(rig.camera, port=port))
-
-
-def _lasers_in(covariance: RigCovariance) -> tuple[int, ...]:
-    numbers = {
-        int(name[6:].split("]")[0]) for name in covariance.names if name.startswith("laser[")
-    }
-    return tuple(sorted(numbers))

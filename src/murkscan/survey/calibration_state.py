@@ -48,25 +48,25 @@ def tables_before(tables: dict[str, Any], step: Sequence[str], *, name: str) -> 
     return restored
 
 
-def snapshot(tables: dict[str, Any], *, laser: int | None = None) -> dict[str, Any]:
+def snapshot(tables: dict[str, Any], *, lasers: Sequence[int] = ()) -> dict[str, Any]:
     """Give what `tables_before` needs, to be kept in a step's record.
 
     Args:
         tables: The tables of the rig file before the step.
-        laser: Number of the laser that the step calibrates.
+        lasers: Numbers of the lasers that the step calibrates.
     """
     covariance = tables.get("calibration", {}).get("covariance")
     kept = {"camera": tables["camera"]}
     if covariance is not None:
         kept["covariance"] = covariance
     known = [] if covariance is None else covariance["parameters"]
-    lasers = {
+    moved = {
         str(number): table
         for number, table in enumerate(tables.get("laser", []))
-        if number == laser or any(name.startswith(f"laser[{number}]") for name in known)
+        if number in lasers or any(name.startswith(f"laser[{number}]") for name in known)
     }
-    if lasers:
-        kept["laser"] = lasers
+    if moved:
+        kept["laser"] = moved
     if any(name.startswith("mount.") for name in known):
         kept["mount"] = tables["mount"]
     return copy.deepcopy(kept)

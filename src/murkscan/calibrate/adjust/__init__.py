@@ -1,0 +1,1 @@
+"""One adjustment of everything: observations, parameters, priors, residuals, covariance."""

@@ -1,0 +1,1 @@
+"""The board that is photographed: its corners, where it is, and the stripe on it."""
