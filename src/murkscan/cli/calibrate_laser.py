@@ -1,7 +1,6 @@
 """murkscan calibrate laser: find a laser's sheet, in air or under water."""
 
 import math
-from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from ..errors import InputError

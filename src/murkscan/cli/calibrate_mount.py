@@ -1,6 +1,5 @@
 """murkscan calibrate mount: where the camera sits on the vehicle."""
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import InputError

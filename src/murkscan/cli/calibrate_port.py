@@ -2,7 +2,6 @@
 
 import math
 import re
-from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from ..errors import InputError
