@@ -12,13 +12,14 @@ import numpy as np
 from harness import Figure, tell
 
 from murkscan.calibrate import Chessboard, find_board
-from murkscan.calibrate.board.stripe import locate_on_board
 from murkscan.survey.calibrate_camera import calibrate_camera_from_photos
 from murkscan.types.camera import Camera
 from murkscan.types.pose import Pose
 
 BOARD = Chessboard(9, 6, 0.03)
-CAMERA = Camera((1920, 1080), (1400.0, 1402.0), (955.0, 548.0), np.array([-0.1, 0.03, 0, 0, 0]))
+CAMERA = Camera((1920, 1080), (1400.0, 1402.0), (955.0, 548.0))
+FINE = 60
+"""Pixels a square of the drawing that photos are made from."""
 COUNT, WITHOUT = 200, 60
 CUT = 0.25
 """Share of the boards that may run out of the picture."""
@@ -87,14 +88,22 @@ def hold(random: np.random.Generator) -> Pose:
 
 
 def render(pose: Pose, random: np.random.Generator) -> np.ndarray:
-    """Look up each pixel's square; soften, and add noise."""
-    v, u = np.mgrid[:1080, :1920]
-    pixels = np.stack([u.ravel(), v.ravel()], axis=1).astype(float)
-    x, y, _ = (pose.inverse() @ locate_on_board(CAMERA, pixels, pose)).T / BOARD.square
-    inside = (x > -1) & (x < BOARD.columns) & (y > -1) & (y < BOARD.rows)
-    paper = (x > -2) & (x < BOARD.columns + 1) & (y > -2) & (y < BOARD.rows + 1)
-    dark = inside & ((np.floor(x) + np.floor(y)) % 2 == 0)
-    level = np.where(dark, 30.0, np.where(paper, 200.0, 70.0)).reshape(1080, 1920)
+    """Lay a fine drawing of the board into the picture by its homography; soften, add noise."""
+    squares = np.indices((BOARD.rows + 1, BOARD.columns + 1)).sum(axis=0) % 2
+    drawing = np.pad(np.where(squares == 0, 30.0, 200.0), 1, constant_values=200.0)
+    drawing = np.kron(drawing, np.ones((FINE, FINE))).astype(np.float32)
+    # Pixel 0's middle lies half a fine pixel inside; the drawing begins two squares before the
+    # first corner.
+    scale = BOARD.square / FINE
+    board_from_drawing = np.array(
+        [[scale, 0, (0.5 - 2 * FINE) * scale], [0, scale, (0.5 - 2 * FINE) * scale], [0, 0, 1]]
+    )
+    picture_from_board = CAMERA.as_matrix() @ np.column_stack(
+        [pose.rotation[:, :2], pose.translation]
+    )
+    level = cv2.warpPerspective(
+        drawing, picture_from_board @ board_from_drawing, CAMERA.size, borderValue=70.0
+    )
     return cv2.GaussianBlur(level, (0, 0), 1.0) + random.normal(0, 2, level.shape)
 
 

@@ -77,7 +77,7 @@ def test_a_camera_is_calibrated_on_parts_of_boards(views):
     _, seen = views
     found = calibrate_camera(seen, BOARD, CAMERA.size)
     assert found.rms < 0.15
-    error = np.array(found.camera.focal_length) - CAMERA.focal_length
+    error = np.array(found.rig.camera.focal_length) - CAMERA.focal_length
     assert np.all(np.abs(error) < 4 * found.sigma[:2])
     assert np.all(found.sigma[:2] < 0.01 * 620)
 
