@@ -138,7 +138,7 @@ def _as_grid(matched: Matched, values: np.ndarray, which: np.ndarray) -> np.ndar
     """Give values of some true centres by frame and scan line; NaN where there is none."""
     truth = matched.truth
     columns = np.rint(truth.pixels[:, 0]).astype(int)
-    size = int(truth.frame.max(initial=0)) + 1, int(columns.max(initial=0)) + 1
+    size = int(truth.frame.max(initial=0)) + 1, int(columns.max(initial=1)) + 1
     grid = np.full(size, np.nan)
     grid[truth.frame[which], columns[which]] = values[which]
     return grid
