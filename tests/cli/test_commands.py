@@ -10,7 +10,7 @@ from murkscan.cli.main import run
 
 COMMANDS = [
     "demo", "simulate", "calibrate", "capture", "scan", "extract", "triangulate", "motion", "cloud",
-    "merge", "mesh", "measure", "view", "report",
+    "merge", "mesh", "measure", "view", "report", "plan",
 ]  # fmt: skip
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from murkscan.errors import FormatError, InputError
+from murkscan.optics.beam import Beam
 from murkscan.simulate import (
     Light,
     Overlay,
@@ -15,7 +16,6 @@ from murkscan.simulate import (
     parse_scene,
     read_scene,
 )
-from murkscan.simulate.beam import Beam
 from murkscan.simulate.fixed_pattern import draw_fixed_pattern
 from murkscan.simulate.sensor import expose
 from murkscan.simulate.window import view_window

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from murkscan.errors import FormatError, InputError
+from murkscan.optics.sensor import Sensor
 from murkscan.simulate import Simulator, list_scenes, load_scene, parse_scene, read_scene
-from murkscan.simulate.sensor import Sensor
 
 NAMES = [
     "plane", "plane-c3", "plane-hd", "plane-c3-hd", "hull", "hull-c3", "hull-hd", "hull-c3-hd",

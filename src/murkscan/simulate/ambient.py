@@ -8,13 +8,14 @@ from jaxtyping import Bool
 
 from ..geometry.ray_casting import Hits
 from ..optics import back_project
+from ..optics.sensor import Picture
 from ..types.arrays import Indices, Pixels, Scalars
 from ..types.pose import Pose
 from ..types.rays import Rays
 from .lit_line import to_world
 from .range_image import cast_picture
 from .scene import Scene
-from .sensor import Picture, blur_lens
+from .sensor import blur_lens
 
 _CONTRAST = 0.03
 """Share of the brightest by which neighbouring pixels may differ before they are averaged."""

@@ -4,12 +4,12 @@ import math
 
 from pydantic import FiniteFloat
 
-from .beam import Light
-from .lamp import Lamp
+from ..optics.beam import Light
+from ..optics.lamp import Lamp
+from ..optics.sensor import FACTORS, KEYS, Colour, Sensor
 from .overlay import Overlay
 from .processing import Processing
 from .recorder import Codec, Recorder
-from .sensor import FACTORS, KEYS, Colour, Sensor
 from .table import Table
 from .window import Window
 

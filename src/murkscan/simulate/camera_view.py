@@ -5,10 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Shaped
 
+from ..optics.sensor import Picture
 from .fixed_pattern import draw_fixed_pattern
 from .overlay import write_over
 from .scene import Scene
-from .sensor import Picture, expose
+from .sensor import expose
 from .window import WindowView, view_window
 
 

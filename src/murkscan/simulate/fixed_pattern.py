@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .sensor import Picture, Sensor
+from ..optics.sensor import Picture, Sensor
 
 _HOT = 0.1, 1.0
 """Charge of a hot pixel in the dark, as a share of the full well, from the least to the most."""

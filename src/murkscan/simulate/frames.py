@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from ..errors import InputError
+from ..optics.sensor import Picture
 from ..types.arrays import Mask, Scalars, SmallNumbers
 from ..types.frame import Frame
 from ..types.true_stripe import TrueStripe
@@ -16,7 +17,7 @@ from .laser_view import LaserView, view_laser
 from .line_image import LineImage, draw_laser
 from .lit_line import LitLine, cast_fan, find_lit_line
 from .scene import Scene
-from .sensor import Picture, sensitivity
+from .sensor import sensitivity
 from .snow_image import density_for
 
 _BRIGHTEST = 0.97

@@ -5,10 +5,10 @@ import numpy as np
 from jaxtyping import Bool, Float32
 from scipy.special import ndtr
 
+from ..optics.sheet_view import SheetView
 from ..types.arrays import Indices, Mask, Scalars
 from ..types.rays import Rays
 from .lit_line import Fall, LitLine, to_world
-from .sheet_view import SheetView
 from .stripe_image import Rendering
 
 _BLOCK = 8

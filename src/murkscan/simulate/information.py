@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float32
 
+from ..optics.stripe_bound import bound_of_position
 from ..types.arrays import Ratios, Scalars
 from .lit_line import LitLine
 
@@ -48,9 +49,6 @@ def measure_information(
         slope: Its derivative by the position [electrons/px].
         variance: Of the whole picture [electrons²].
         told: Which pixels along a scan line the frame has: half of them in a field.
-
-    References:
-        Kay, Fundamentals of Statistical Signal Processing: Estimation Theory, 1993, section 3.5.
     """
     half = int(min(np.ceil(_REACH * widths.max(initial=1.0)), _WIDEST))
     at = np.rint(line.positions).astype(int)[:, None] + np.arange(-half, half + 1)
@@ -62,8 +60,6 @@ def measure_information(
     weight = np.where(inside, 1.0 / variance[rows, at], 0.0)
     light = stripe[rows, at]
     power = (weight * light**2).sum(axis=1)
-    known = (weight * slope[rows, at].astype(float) ** 2).sum(axis=1)
-    with np.errstate(divide="ignore"):
-        crlb = 1 / np.sqrt(known)
+    crlb = bound_of_position(slope[rows, at], weight)
     peak = np.where(inside, light, 0.0).max(axis=1, initial=0.0)
     return Information(*(a.astype(np.float32) for a in (np.sqrt(power), crlb, peak)))

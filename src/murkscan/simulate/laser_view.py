@@ -4,13 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..optics.beam import Beam
+from ..optics.scan_lines import ScanLines
+from ..optics.sensor import Picture
+from ..optics.sheet_view import SheetView, glow_of, view_sheet
 from ..optics.spread import Spread
 from ..types.arrays import Pixels, Scalars
-from .beam import Beam
-from .scan_lines import ScanLines
 from .scene import Scene
-from .sensor import Picture
-from .sheet_view import SheetView, glow_of, view_sheet
 from .stripe_image import Rendering
 from .water_blur import WaterBlur, Weights
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..optics.sensor import Picture
 from ..types.arrays import Scalars
 from .glow_image import mask_glow
 from .laser_view import LaserView
@@ -12,7 +13,7 @@ from .lit_line import LitLine, cast_fan, find_lit_line
 from .particles import strew
 from .reflected import draw_mirrored, mirror
 from .scene import Scene
-from .sensor import Picture, blur_lens
+from .sensor import blur_lens
 from .snow_image import draw_snow, places_in_light
 from .speckle import draw_speckle
 from .stripe_image import Rendering, draw_line, widths_of

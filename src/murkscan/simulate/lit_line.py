@@ -10,11 +10,11 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from ..geometry.ray_casting import RayCaster
+from ..optics.beam import Beam
+from ..optics.scan_lines import ScanLines
 from ..types.arrays import Indices, Mask, Points, Scalars
 from ..types.pose import Pose
 from ..types.rays import Rays
-from .beam import Beam
-from .scan_lines import ScanLines
 
 _RAYS_A_LINE = 3
 """Rays of the fan for each scan line: more than one between two of them, also at the sides."""

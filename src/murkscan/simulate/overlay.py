@@ -6,8 +6,8 @@ import cv2
 import numpy as np
 
 from ..errors import InputError
+from ..optics.sensor import Picture
 from ..types.arrays import Image
-from .sensor import Picture
 
 _FONT = cv2.FONT_HERSHEY_SIMPLEX
 _SIZE = 22.0

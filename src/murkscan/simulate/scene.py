@@ -7,17 +7,17 @@ import numpy as np
 
 from ..errors import InputError
 from ..optics import refractive_index
+from ..optics.beam import Light
 from ..optics.medium import Medium
+from ..optics.sensor import Sensor
 from ..types.arrays import Scalars
 from ..types.pose import Pose
 from ..types.rig import Rig
 from ..types.trajectory import Trajectory
-from .beam import Light
 from .overlay import Overlay
 from .particles import Particles
 from .processing import Processing
 from .recorder import Recorder
-from .sensor import Sensor
 from .surface import Body, Surroundings
 from .vehicle import Navigation
 from .window import Window

@@ -5,8 +5,9 @@ import math
 import numpy as np
 from scipy.special import gammaincinv, ndtr
 
+from ..optics.sensor import Picture
 from ..types.arrays import Vector
-from .sensor import Picture, blur_lens
+from .sensor import blur_lens
 
 _GRAIN = 1e-5
 """Way over which a vehicle leaves its speckle behind [m]."""

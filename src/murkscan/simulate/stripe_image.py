@@ -8,12 +8,12 @@ from jaxtyping import Float32
 
 from .._kernels.splat import LineSplats, splat_on_lines
 from ..geometry.ray_casting import Hits
+from ..optics.beam import Beam
+from ..optics.scan_lines import ScanLines
 from ..types.arrays import Points, Scalars
 from ..types.pose import Pose
 from ..types.rays import Rays
-from .beam import Beam
 from .lit_line import LitLine, to_world
-from .scan_lines import ScanLines
 from .surface import Surroundings
 
 Picture = Float32[np.ndarray, "h w"]

@@ -13,9 +13,9 @@ import cv2
 import numpy as np
 from jaxtyping import Float, Float32
 
+from ..optics.sensor import Picture
 from ..types.arrays import Pixels
 from ..types.laser import Axis
-from .sensor import Picture
 
 _FINEST = 1.5
 """Pixels that a Gaussian has at least, 1σ, on the level on which it is drawn."""

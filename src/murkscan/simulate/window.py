@@ -7,8 +7,9 @@ import cv2
 import numpy as np
 
 from ..errors import InputError
+from ..optics.sensor import Picture
 from ..types.laser import Axis
-from .sensor import Picture, blur_lens
+from .sensor import blur_lens
 
 _SPOT = 4.0
 """Median radius of a spot of dirt [px]; a third of them are smaller or larger by half as much."""

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import InputError
-from ..optics.medium import Medium
 from ..types.arrays import Directions, Points, Scalars
 from ..types.rays import Rays
+from .medium import Medium
 
 _STEPS = 24
 """Places along a line of sight at which the water's light is added up."""

@@ -4,11 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..optics import back_project, intersect_rays_with_sheet, project
 from ..types.arrays import Indices, Pixels, Points, Scalars
 from ..types.camera import Camera
 from ..types.laser import Laser
 from ..types.rays import Rays
+from .sheet import intersect_rays_with_sheet
+from .view import back_project, project
 
 _TOUCH = 5e-5
 """Half the side of a patch whose picture is taken [m]."""

@@ -8,11 +8,11 @@ import numpy as np
 from jaxtyping import Float
 
 from ..errors import InputError
-from ..optics import as_fan, locate_on_fan, trace_fan
 from ..types.arrays import Directions, Points, Scalars
 from ..types.laser import Fan, FanCoordinates, Laser
 from ..types.rays import Rays
 from .lamp import Lamp
+from .sheet import as_fan, locate_on_fan, trace_fan
 
 _NUM_ANGLES = 4001
 """Rays by which the fan's spreading is tabled."""

@@ -4,10 +4,10 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from ..optics.glow import sheet_glow
-from ..optics.medium import Medium
 from ..types.arrays import Directions, Indices, Mask, Pixels, Points, Scalars
 from .beam import Beam
+from .glow import sheet_glow
+from .medium import Medium
 from .scan_lines import ScanLines
 
 
