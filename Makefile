@@ -32,12 +32,15 @@ clean:
 $(BIN)/python:
 	@$(PYTHON) -c 'import sys; sys.exit(not (3, 11) <= sys.version_info < (3, 14))' || { \
 	  echo "murkscan needs Python 3.11, 3.12 or 3.13; name one: make PYTHON=python3.12 demo"; exit 1; }
-	$(PYTHON) -m venv $(VENV)
+	@echo "Making an environment in $(VENV)."
+	@$(PYTHON) -m venv $(VENV)
 
 $(VENV)/core: $(BIN)/python pyproject.toml constraints.txt
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable .
+	@echo "Installing murkscan and its libraries, about 0.9 GB: a minute or two, once."
+	@$(BIN)/python -m pip install --progress-bar on --constraint constraints.txt --editable .
 	@touch $@
 
 $(VENV)/dev: $(BIN)/python pyproject.toml constraints.txt
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[dev]'
+	@echo "Installing murkscan with what checks and tests need: a minute or two, once."
+	@$(BIN)/python -m pip install --progress-bar on --constraint constraints.txt --editable '.[dev]'
 	@touch $@ $(VENV)/core

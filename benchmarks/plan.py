@@ -100,7 +100,9 @@ def judge(stripe: TrueStripe, rig: Rig) -> tuple[float, float, float]:
     axis = "xy".index(rig.lasers[0].axis)
     step = STEP * np.eye(2)[axis]
     ends = [RaySheet().locate(pixels[found] + sign * step, rig, 0) for sign in (-1, 1)]
-    per_pixel = np.linalg.norm(ends[1] - ends[0], axis=1) / (2 * STEP)
+    # As a scan states it: how far the point moves along its ray.
+    ranges = [np.linalg.norm(end, axis=1) for end in ends]
+    per_pixel = np.abs(ranges[1] - ranges[0]) / (2 * STEP)
     return found.mean(), float(np.nanmedian(bound[found] * per_pixel)), float(np.median(bound))
 
 
@@ -185,7 +187,7 @@ def main() -> None:
         f"progressive and interlaced, 10 to 200 mW); {blind} more would see nothing and say so. A "
         "plain wall, simulated at nine distances each, six of them within 25 % of the range limit; "
         f"found is what has a bound of {VISIBLE:g} px or better in the simulator's truth. σ is the "
-        "median over the scan lines along the ray, compared where both have one, at its worst distance."
+        "median over the scan lines along the ray, at the worst distance where both have one."
     )
     tell("plan", "The plan against the simulator", figures, note=note)
 

@@ -62,7 +62,6 @@ def test_out_and_what_may_come_in_either_order(scanned):
 
 
 def test_a_section_is_drawn_in_every_format(scanned):
-    pytest.importorskip("ezdxf")
     arguments = ("--point-m", middle(scanned), "--normal", "0,1,0", "--formats", "svg,csv,dxf")
     assert measure(scanned, "section", *arguments) == 0
     folder = scanned / "measure"

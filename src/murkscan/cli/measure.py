@@ -133,7 +133,7 @@ def section(
     normal
         Its normal, as X,Y,Z of any length: 0,1,0 cuts across y.
     formats
-        What to write of dxf, svg and csv; dxf needs the extra murkscan[formats].
+        What to write of dxf, svg and csv.
     name
         What to call it: OUT/measure/NAME.json, .svg …
     """

@@ -31,7 +31,7 @@ def progress_bars() -> Iterator["Progress"]:
     )
     from rich.progress import Progress as Bars
 
-    name = TextColumn("{task.description:<18}")
+    name = TextColumn("{task.description:<22}")
     columns: list[ProgressColumn] = [SpinnerColumn(), name, BarColumn()]
     columns += [MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn()]
     tasks: dict[str, TaskID] = {}

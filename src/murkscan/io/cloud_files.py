@@ -8,8 +8,8 @@ from pathlib import Path
 from ..errors import InputError
 from ..types.cloud import PointCloud
 from .cloud_columns import BLOCK
-from .e57 import import_pye57, iterate_e57, writing_e57
-from .las import import_laspy, iterate_las, writing_las
+from .e57 import iterate_e57, writing_e57
+from .las import iterate_las, writing_las
 from .ply_foreign import iterate_ply, writing_shown_ply
 from .xyz import iterate_xyz, writing_csv, writing_xyz
 
@@ -40,7 +40,6 @@ def writing_cloud_file(
 
     Raises:
         InputError: The suffix is another.
-        MissingDependency: The format needs the extra `[formats]`, which is not installed.
         DeviceError: The disk is full or cannot be written.
     """
     check_cloud_suffix(path)
@@ -59,7 +58,6 @@ def iterate_cloud_file(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud
     Raises:
         InputError: The suffix is another.
         FormatError: The file is not what its suffix says, or damaged; memory stays bounded.
-        MissingDependency: The format needs the extra `[formats]`, which is not installed.
         FileNotFoundError: There is no such file.
     """
     check_cloud_suffix(path)
@@ -94,14 +92,9 @@ def check_cloud_suffix(path: Path) -> None:
 
     Raises:
         InputError: The suffix is none of a cloud.
-        MissingDependency: The format needs the extra `[formats]`, which is not installed.
     """
     suffix = path.suffix.lower()
     if suffix not in CLOUD_SUFFIXES:
         raise InputError(
             f"{path} has no suffix of a cloud; give one of {', '.join(CLOUD_SUFFIXES)}."
         )
-    if suffix in (".las", ".laz"):
-        import_laspy()
-    if suffix == ".e57":
-        import_pye57()

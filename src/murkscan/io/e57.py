@@ -1,4 +1,4 @@
-"""Clouds as E57 files, the laser scanners' exchange format. Extra `[formats]`."""
+"""Clouds as E57 files, the laser scanners' exchange format."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -8,7 +8,7 @@ from uuid import uuid4
 
 import numpy as np
 
-from ..errors import FormatError, MissingDependency
+from ..errors import FormatError
 from ..types.cloud import PointCloud
 from ..types.pose import Pose
 from .atomic import replacing
@@ -16,7 +16,7 @@ from .cloud_columns import BLOCK, COLUMNS, SCALARS, as_rows, from_columns, known
 from .e57_xml import check_e57_xml
 
 if TYPE_CHECKING:
-    from types import ModuleType
+    pass
 
 _PLACE = {"cartesianX": "x", "cartesianY": "y", "cartesianZ": "z"}
 _SPHERE = ("sphericalRange", "sphericalAzimuth", "sphericalElevation")
@@ -45,10 +45,10 @@ def writing_e57(path: Path) -> Iterator[Callable[[PointCloud], None]]:
     at all.
 
     Raises:
-        MissingDependency: The extra is not installed.
         DeviceError: The disk is full or cannot be written.
     """
-    pye57 = import_pye57()
+    import pye57
+
     lib = pye57.libe57
     arrays = {name: np.zeros(BLOCK, _buffer_type(name)) for name in _FIELDS}
     with replacing(path) as aside, _open_to_write(pye57, aside) as file:
@@ -92,12 +92,12 @@ def iterate_e57(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud]:
     Points that the file marks as invalid are left out.
 
     Raises:
-        MissingDependency: The extra is not installed.
         FormatError: The file is no such file, or a scan of it has no coordinates, or other points
             than it says.
         FileNotFoundError: There is no such file.
     """
-    pye57 = import_pye57()
+    import pye57
+
     lib = pye57.libe57
     check_e57_xml(path)
     try:
@@ -112,21 +112,6 @@ def iterate_e57(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud]:
             f"{path} cannot be read as E57: it is damaged, or of a kind that is not known here. "
             "Save it anew, or as .las."
         ) from error
-
-
-def import_pye57() -> "ModuleType":
-    """Import pye57, late: it is an extra.
-
-    Raises:
-        MissingDependency: It is not installed.
-    """
-    try:
-        import pye57
-    except ImportError as error:
-        raise MissingDependency(
-            'E57 needs pye57: pip install "murkscan[formats]", or ".[formats]" in a clone.'
-        ) from error
-    return pye57
 
 
 def _add_scan(lib: Any, file: Any) -> Any:

@@ -1,4 +1,4 @@
-"""Clouds as LAS and LAZ files, the surveyors' format. Extra `[formats]`."""
+"""Clouds as LAS and LAZ files, the surveyors' format."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..errors import FormatError, InputError, MissingDependency
+from ..errors import FormatError, InputError
 from ..types.cloud import PointCloud
 from .atomic import replacing
 from .blocks import rows_at_once
@@ -16,7 +16,7 @@ from .las_header import check_las_header
 from .laz_chunks import check_laz_chunks
 
 if TYPE_CHECKING:
-    from types import ModuleType
+    pass
 
 _STEP = 1e-5
 """Step of the coordinates [m]: a tenth of the noise of the best points."""
@@ -34,11 +34,11 @@ def writing_las(path: Path) -> Iterator[Callable[[PointCloud], None]]:
     is the intensity, too. The file appears whole when the context ends, or not at all.
 
     Raises:
-        MissingDependency: The extra is not installed.
         InputError: Points lie farther than 21 km from the first ones, or are not finite.
         DeviceError: The disk is full or cannot be written.
     """
-    laspy = import_laspy()
+    import laspy
+
     header = laspy.LasHeader(point_format=_POINT_FORMAT, version="1.4")
     header.generating_software = "murkscan"
     header.scales = np.full(3, _STEP)
@@ -66,11 +66,11 @@ def iterate_las(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud]:
     """Read the points of a LAS or LAZ file, some at a time.
 
     Raises:
-        MissingDependency: The extra is not installed.
         FormatError: The file is no such file, or holds fewer points than it says.
         FileNotFoundError: There is no such file.
     """
-    laspy = import_laspy()
+    import laspy
+
     check_las_header(path)
     with _blaming(path):
         # One thread: the others believe the sizes that a file states before they read it.
@@ -127,23 +127,6 @@ def _unreadable(path: Path) -> FormatError:
 
 def _is_laz(path: Path) -> bool:
     return path.suffix.lower() == ".laz"
-
-
-def import_laspy() -> "ModuleType":
-    """Import laspy with what packs LAZ, late: it is an extra.
-
-    Raises:
-        MissingDependency: It is not installed.
-    """
-    try:
-        import laspy
-        import lazrs  # noqa: F401
-    except ImportError as error:
-        raise MissingDependency(
-            'LAS and LAZ need laspy and lazrs: pip install "murkscan[formats]", or ".[formats]" in '
-            "a clone."
-        ) from error
-    return laspy
 
 
 def _as_points(laspy: Any, header: Any, cloud: PointCloud, path: Path) -> Any:

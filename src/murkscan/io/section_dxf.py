@@ -1,4 +1,4 @@
-"""Sections as DXF drawings, by ezdxf. Extra `[formats]`."""
+"""Sections as DXF drawings, by ezdxf."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -6,11 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..errors import MissingDependency
 from .atomic import replacing
 
 if TYPE_CHECKING:
-    from types import ModuleType
+    pass
 
 _LAYER = "SECTION"
 
@@ -23,11 +22,12 @@ def save_section_dxf(path: Path, drawing: Sequence[np.ndarray]) -> None:
         drawing: Each line in the drawing's x and y [m]; n 2 each.
 
     Raises:
-        MissingDependency: ezdxf is not installed.
         DeviceError: The disk is full or cannot be written.
     """
-    ezdxf = require_ezdxf()
-    document = ezdxf.new("R2010", units=ezdxf.units.MM)
+    from ezdxf import units
+    from ezdxf.filemanagement import new
+
+    document = new("R2010", units=units.MM)
     document.layers.add(_LAYER)
     space = document.modelspace()
     for line in drawing:
@@ -36,19 +36,3 @@ def save_section_dxf(path: Path, drawing: Sequence[np.ndarray]) -> None:
         space.add_lwpolyline(corners.tolist(), close=is_closed, dxfattribs={"layer": _LAYER})
     with replacing(path) as aside:
         document.saveas(aside)
-
-
-def require_ezdxf() -> "ModuleType":
-    """Give ezdxf.
-
-    Raises:
-        MissingDependency: It is not installed.
-    """
-    try:
-        import ezdxf
-    except ModuleNotFoundError as error:
-        raise MissingDependency(
-            'DXF needs ezdxf: pip install "murkscan[formats]", or ".[formats]" in a clone; or '
-            "leave it out with --formats svg,csv."
-        ) from error
-    return ezdxf

@@ -127,13 +127,18 @@ def _scan(
         extractor=extractor,
         rig_file=rig_file,
         command=("demo", str(out)),
-        progress=progress,
+        progress=_of(name.split(":")[0], progress),
     )
     points = project.load_cloud().points
     compared = points[:: -(-len(points) // _COMPARED) or 1]
     truth = load_mesh(out / "recording" / "truth" / "mesh.ply")
     errors = Errors.from_distances(distance_to_mesh(compared, truth, within=FALSE))
     return Compared(name, project, errors)
+
+
+def _of(name: str, progress: Progress) -> Progress:
+    """Let the bars of a scan have its name."""
+    return lambda stage, done, total: progress(f"{name}: {stage}", done, total)
 
 
 def _page(ours: Compared, paper: Compared) -> str:

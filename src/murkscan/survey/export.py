@@ -29,7 +29,6 @@ def export_cloud(
         MissingResult: The cloud stage has not been finished.
         InputError: The suffix is no cloud's, the cloud is empty, or the file lies among what a
             stage has made.
-        MissingDependency: The format needs the extra `[formats]`, which is not installed.
         DeviceError: The disk is full.
     """
     count = project.finished(CLOUD).result.points
@@ -52,7 +51,6 @@ def check_export(path: Path) -> None:
 
     Raises:
         InputError: The suffix is no cloud's, or the file lies among what a stage has made.
-        MissingDependency: The format needs the extra `[formats]`, which is not installed.
     """
     check_cloud_suffix(path)
     require_outside_stages(path)

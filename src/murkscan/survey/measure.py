@@ -3,7 +3,7 @@
 from collections.abc import Callable, Collection
 
 from ..io.section_csv import save_section_csv
-from ..io.section_dxf import require_ezdxf, save_section_dxf
+from ..io.section_dxf import save_section_dxf
 from ..io.section_svg import save_section_svg
 from ..measure import (
     Sample,
@@ -68,12 +68,9 @@ def measure_cut(
 
     Raises:
         MissingResult: The mesh stage has not been finished.
-        MissingDependency: DXF is asked for, and ezdxf is not installed.
         NotEnoughData: The plane does not meet the surface.
     """
     files = {kind: measure_file(project, name, kind) for kind in formats}
-    if "dxf" in files:
-        require_ezdxf()
     section = cut_section(project.load_mesh(), plane)
     measured, sigmas = measure_section(section, load_sample(project))
     drawing = section.as_drawing()
