@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: demo test check bench viewer clean
+.PHONY: demo test check bench docs viewer clean
 
 demo: $(VENV)/core
 	$(BIN)/murkscan demo
@@ -21,6 +21,11 @@ check: $(VENV)/dev
 
 bench: $(VENV)/dev
 	@set -e; for script in benchmarks/*.py; do echo "== $$script"; $(BIN)/python $$script; done
+
+# The site of the pages, the examples (which are run) and the docstrings: docs/_build/html/index.html.
+docs: $(VENV)/docs
+	$(BIN)/python -m sphinx -q -W --keep-going -b html docs docs/_build/html
+	@echo "Open docs/_build/html/index.html"
 
 # The script of the page that `murkscan view` writes; committed, so that users need no node.
 viewer:
@@ -43,4 +48,9 @@ $(VENV)/core: $(BIN)/python pyproject.toml constraints.txt
 $(VENV)/dev: $(BIN)/python pyproject.toml constraints.txt
 	@echo "Installing murkscan with what checks and tests need: a minute or two, once."
 	@$(BIN)/python -m pip install --progress-bar on --constraint constraints.txt --editable '.[dev]'
+	@touch $@ $(VENV)/core
+
+$(VENV)/docs: $(BIN)/python pyproject.toml constraints.txt
+	@echo "Installing murkscan with what the site needs: a minute or two, once."
+	@$(BIN)/python -m pip install --progress-bar on --constraint constraints.txt --editable '.[docs]'
 	@touch $@ $(VENV)/core

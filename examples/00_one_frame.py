@@ -1,4 +1,7 @@
-"""One picture: find the stripe, and turn it into points.
+"""One picture
+===========
+
+Find the stripe in one picture, and turn it into points.
 
 Everything here is a value: a rig, a frame, a stripe, a profile.
 """

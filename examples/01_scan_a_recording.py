@@ -1,4 +1,8 @@
-"""A whole scan: the main path of the package, on a recording that is simulated first."""
+"""A whole scan
+============
+
+The main path of the package, on a recording that is simulated first.
+"""
 
 from dataclasses import replace
 from pathlib import Path

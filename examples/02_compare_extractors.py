@@ -1,4 +1,8 @@
-"""Which extractor? Hold each against the true centres of a recording in murky water."""
+"""Which extractor?
+================
+
+Hold each finder against the true centres of a recording in murky water.
+"""
 
 import numpy as np
 

@@ -1,4 +1,7 @@
-"""A camera behind a flat window in water: the same pixels, other points.
+"""Through a window
+================
+
+A camera behind a flat window in water: the same pixels, other points.
 
 A rig calibrated in air keeps its lens; the window and the water are written down beside it.
 """

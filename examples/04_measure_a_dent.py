@@ -1,4 +1,7 @@
-"""Find a dent in a scanned hull, and say how deep it is, and how sure that is.
+"""A dent
+======
+
+Find a dent in a scanned hull, and say how deep it is, and how sure that is.
 
 The scan is made up here, with a dent of 2 mm and noise of 0.15 mm a point; of a real one, take
 `ms.Project("dive").load_cloud()`, or `murkscan measure dive dents`.

@@ -17,11 +17,13 @@ _STILL = 1e-9
 class SurfaceDirections:
     """Three unit directions at right angles, in the world frame.
 
-             towards the scanner
-                  |   / across (along the stripe)
-                  |  /
-    the surface   | /
-    --------------+------------> along the motion
+    ::
+
+                 towards the scanner
+                      |   / across (along the stripe)
+                      |  /
+        the surface   | /
+        --------------+------------> along the motion
     """
 
     along: Vector

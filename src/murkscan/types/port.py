@@ -36,11 +36,11 @@ class FlatPort:
 
     ::
 
-    optical                inner      outer
-    centre                 face       face
-       ●───────distance──────┃glass ...┃     water
-                             ┃         ┃
-                                  ───────▶ normal
+        optical                inner      outer
+        centre                 face       face
+           ●───────distance──────┃glass ...┃     water
+                                 ┃         ┃
+                                      ───────▶ normal
     """
 
     normal: Vector
