@@ -134,3 +134,21 @@ def test_a_camera_is_not_written_into_a_file_that_is_no_rig(tmp_path):
     with pytest.raises(FormatError, match="title"):
         save_calibration(path, Rig(camera), ["camera"], record={})
     assert path.read_text() == 'title = "not a rig"\n'
+
+
+def test_the_accuracy_of_a_log_is_read_in_its_units_and_written_back(tmp_path):
+    text = RIG + "\n[navigation]\nvelocity_noise_mm_s = 3.0\nheading_drift_deg_min = 0.5\n"
+    (tmp_path / "rig.toml").write_text(text)
+    rig = load_rig(tmp_path / "rig.toml")
+    assert rig.navigation.velocity_noise == pytest.approx(3e-3)
+    assert rig.navigation.heading_drift == pytest.approx(np.deg2rad(0.5) / 60)
+    assert rig.navigation.depth_noise is None
+    save_rig(tmp_path / "copy.toml", rig)
+    assert load_rig(tmp_path / "copy.toml").navigation == rig.navigation
+
+
+@pytest.mark.parametrize("line", ["velocity_noise_mm_s = 0", "speed_mm = 3"])
+def test_an_accuracy_that_cannot_be_is_refused_by_its_key(tmp_path, line):
+    (tmp_path / "rig.toml").write_text(RIG + f"\n[navigation]\n{line}\n")
+    with pytest.raises(FormatError, match=f"navigation.{line.split()[0]}"):
+        load_rig(tmp_path / "rig.toml")

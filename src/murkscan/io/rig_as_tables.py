@@ -12,6 +12,7 @@ from ..types.pose import Pose
 from ..types.rig import Rig
 from ..types.rig_covariance import RigCovariance
 from ..types.water import Water
+from .navigation_table import navigation_table
 
 
 def as_tables(rig: Rig) -> dict[str, Any]:
@@ -26,6 +27,8 @@ def as_tables(rig: Rig) -> dict[str, Any]:
         tables["water"] = water_table(rig.water)
     if rig.vehicle_from_camera is not None:
         tables["mount"] = mount_table(rig.vehicle_from_camera)
+    if rig.navigation is not None:
+        tables["navigation"] = navigation_table(rig.navigation)
     if rig.covariance.names:
         tables["calibration"] = {"covariance": covariance_table(rig.covariance)}
     return tables

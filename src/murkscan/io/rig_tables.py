@@ -19,6 +19,7 @@ from ..types.pose import Pose
 from ..types.rig import Rig
 from ..types.rig_covariance import RigCovariance
 from ..types.water import Water
+from .navigation_table import NavigationTable
 
 _Positive = Annotated[PositiveFloat, Field(allow_inf_nan=False)]
 _NotNegative = Annotated[FiniteFloat, Field(ge=0)]
@@ -218,6 +219,7 @@ class RigTable(_Table):
     laser: list[_LaserTable] = []
     water: _WaterTable | None = None
     mount: _MountTable | None = None
+    navigation: NavigationTable | None = None
     calibration: _CalibrationTable = _CalibrationTable()
 
     def as_rig(self) -> Rig:
@@ -235,6 +237,7 @@ class RigTable(_Table):
             wavelength=self.wavelength_nm / 1e9,
             water=None if self.water is None else self.water.as_water(),
             vehicle_from_camera=None if self.mount is None else self.mount.as_pose(),
+            navigation=None if self.navigation is None else self.navigation.as_accuracy(),
             covariance=RigCovariance() if covariance is None else covariance.as_covariance(),
         )
 

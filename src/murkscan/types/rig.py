@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from ..errors import InputError
 from .camera import Camera
 from .laser import Laser
+from .navigation import NavigationAccuracy
 from .pose import Pose
 from .rig_covariance import RigCovariance
 from .water import Water
@@ -23,6 +24,8 @@ class Rig:
     """What the rig is in, behind its ports; None for air."""
     vehicle_from_camera: Pose | None = None
     """The mount, where the rig sits on a vehicle whose own poses are logged."""
+    navigation: NavigationAccuracy | None = None
+    """How good the log of that vehicle is; None where nothing is stated."""
     covariance: RigCovariance = field(default_factory=RigCovariance)
     """How well its parameters are known; of none where no calibration says so."""
 

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from jaxtyping import Float
 from scipy.spatial.transform import Rotation, Slerp
 
 from ..errors import InputError
@@ -20,6 +21,10 @@ class Trajectory:
     """Optical centre in the world frame [m]."""
     quaternions: Quaternions
     """Rotation from camera axes to world axes, w x y z."""
+    errors: Float[np.ndarray, "n 6 m"] | None = None
+    """Independent errors of the whole way, each of one standard deviation: what it shifts the
+    optical centre by [m], and turns the camera by about it [rad], along the world's axes. The
+    covariance of two poses is the product of their errors. None where nothing is stated."""
 
     def __post_init__(self) -> None:
         """Refuse times that do not increase."""
@@ -46,7 +51,13 @@ class Trajectory:
         rotations = Rotation.from_quat(self.quaternions, scalar_first=True)
         if len(self.times) > 1:
             rotations = Slerp(self.times, rotations)(times)
-        return Trajectory(times, positions, rotations.as_quat(scalar_first=True))
+        errors = self.errors
+        if errors is not None and len(self.times) > 1:
+            before = np.clip(np.searchsorted(self.times, times) - 1, 0, len(self.times) - 2)
+            share = (times - self.times[before]) / (self.times[before + 1] - self.times[before])
+            share = share[:, None, None]
+            errors = (1 - share) * errors[before] + share * errors[before + 1]
+        return Trajectory(times, positions, rotations.as_quat(scalar_first=True), errors)
 
     def has(self, times: Scalars) -> Mask:
         """Tell which times [s] are among its own: frames whose pose is known, not interpolated."""
@@ -68,15 +79,45 @@ class Trajectory:
     def follow_mount(self, source_from_camera: Pose) -> "Trajectory":
         """Give world_from_camera where this is world_from_source: a vehicle with a mount."""
         rotations = Rotation.from_quat(self.quaternions, scalar_first=True)
+        arms = rotations.apply(source_from_camera.translation)
         return Trajectory(
             self.times,
-            self.positions + rotations.apply(source_from_camera.translation),
+            self.positions + arms,
             (rotations * Rotation.from_matrix(source_from_camera.rotation)).as_quat(
                 scalar_first=True
             ),
+            None if self.errors is None else _at_arms(self.errors, arms),
         )
+
+    def shifts(self, points: Points, times: Scalars) -> Float[np.ndarray, "n 3 m"]:
+        """Compute how each of the errors moves points.
+
+        Args:
+            points: In the world [m].
+            times: When each was seen [s].
+
+        Returns:
+            Shifts along the world's axes [m]; no columns where the trajectory states no errors.
+        """
+        if self.errors is None:
+            return np.zeros((len(points), 3, 0))
+        moments, which = np.unique(times, return_inverse=True)
+        poses = self.at(moments)
+        assert poses.errors is not None
+        return _at_arms(poses.errors[which], points - poses.positions[which])[:, :3]
 
     def carry(self, target_from_world: Pose) -> "Trajectory":
         """Give target_from_camera where this is world_from_camera."""
         positions = target_from_world @ self.positions
-        return Trajectory(self.times, positions, target_from_world.turn(self.quaternions))
+        errors = self.errors
+        if errors is not None:
+            turn = np.kron(np.eye(2), target_from_world.rotation)
+            errors = np.einsum("ij,njm->nim", turn, errors)
+        return Trajectory(self.times, positions, target_from_world.turn(self.quaternions), errors)
+
+
+def _at_arms(errors: Float[np.ndarray, "n 6 m"], arms: Points) -> Float[np.ndarray, "n 6 m"]:
+    """Carry errors from the origin to the ends of arms [m] that turn with it."""
+    moved = errors.copy()
+    moved[:, :3] += np.cross(errors[:, 3:], arms[:, :, None], axis=1)
+    return moved

@@ -1,0 +1,190 @@
+"""Small plane pieces of a surface, from the cells of a scan's own grid."""
+
+import numba
+import numpy as np
+
+MOMENTS = 11
+"""What a cell sums: count, x, y, z, xx, xy, xz, yy, yz, zz, brightness."""
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy")
+def sum_cells(
+    points: np.ndarray,
+    profile: np.ndarray,
+    cell: np.ndarray,
+    bright: np.ndarray,
+    rotations: np.ndarray,
+    positions: np.ndarray,
+    num_cells: int,
+) -> np.ndarray:
+    """Sum the points of each cell in the world, with their products.
+
+    Args:
+        points: In the vehicle's frame [m], n × 3.
+        profile: Number of each point's pose, n.
+        cell: Number of each point's cell, n.
+        bright: Brightness of each point, n.
+        rotations: world_from_vehicle, p × 3 × 3.
+        positions: Of the vehicle, from an origin nearby lest products lose digits [m], p × 3.
+        num_cells: Count of cells.
+
+    Returns:
+        c × 11; see `MOMENTS`.
+    """
+    sums = np.zeros((num_cells, 11))
+    for i in range(len(points)):
+        r, t, p = rotations[profile[i]], positions[profile[i]], points[i]
+        x = r[0, 0] * p[0] + r[0, 1] * p[1] + r[0, 2] * p[2] + t[0]
+        y = r[1, 0] * p[0] + r[1, 1] * p[1] + r[1, 2] * p[2] + t[1]
+        z = r[2, 0] * p[0] + r[2, 1] * p[1] + r[2, 2] * p[2] + t[2]
+        s = sums[cell[i]]
+        s[0] += 1.0
+        s[1] += x
+        s[2] += y
+        s[3] += z
+        s[4] += x * x
+        s[5] += x * y
+        s[6] += x * z
+        s[7] += y * y
+        s[8] += y * z
+        s[9] += z * z
+        s[10] += bright[i]
+    return sums
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy")
+def fit_facets(
+    sums: np.ndarray, num_rows: int, num_columns: int, axes: np.ndarray, reach: int, jump: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Fit a plane, and the slope of the brightness, to each cell and those around it.
+
+    The plane is a height along the row's line of sight over two axes across it; least squares of
+    the heights of all points of (2·reach + 1)² cells.
+
+    Args:
+        sums: Of `sum_cells`, (rows · columns) × 11.
+        num_rows: Rows of cells: groups of profiles.
+        num_columns: Columns of cells: groups of scan lines.
+        axes: Two axes across the line of sight and the one towards the sensor, of each row, as
+            rows of a matrix, rows × 3 × 3.
+        reach: Cells to each side.
+        jump: Distance between the middles of two cells, for each cell between them, above which
+            they are two surfaces [m].
+
+    Returns:
+        Of each cell 9 numbers: the unit normal (towards the sensor), the variance of the plane's
+        slope for points of variance 1 along its two axes (u, v), mean square distance from the
+        plane [m²], the points that made it, the slope of the brightness over u and over v. And the
+        points' own mean, with the mean brightness, c × 4. NaN where there is no plane.
+    """
+    found = np.full((num_rows * num_columns, 9), np.nan)
+    middle = np.full((num_rows * num_columns, 4), np.nan)
+    for c in range(num_rows * num_columns):
+        if sums[c, 0] > 0:
+            for k in range(3):
+                middle[c, k] = sums[c, 1 + k] / sums[c, 0]
+            middle[c, 3] = sums[c, 10] / sums[c, 0]
+    for i in range(num_rows):
+        a = axes[i]
+        for j in range(num_columns):
+            _fit_one(sums, middle, found, i, j, num_rows, num_columns, a, reach, jump)
+    return found, middle
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy")
+def _fit_one(
+    sums: np.ndarray,
+    middle: np.ndarray,
+    found: np.ndarray,
+    i: int,
+    j: int,
+    num_rows: int,
+    num_columns: int,
+    a: np.ndarray,
+    reach: int,
+    jump: float,
+) -> None:
+    c = i * num_columns + j
+    if sums[c, 0] == 0:
+        return
+    m = middle[c]
+    n = su = sv = sh = suu = suv = svv = suh = svh = shh = 0.0
+    b = bu = bv = 0.0
+    sides = 0
+    for di in range(-reach, reach + 1):
+        for dj in range(-reach, reach + 1):
+            if not (0 <= i + di < num_rows and 0 <= j + dj < num_columns):
+                continue
+            d = (i + di) * num_columns + j + dj
+            s = sums[d]
+            if s[0] == 0:
+                continue
+            ex, ey, ez = middle[d, 0] - m[0], middle[d, 1] - m[1], middle[d, 2] - m[2]
+            far = jump * max(abs(di), abs(dj))
+            if ex * ex + ey * ey + ez * ez > far * far:
+                continue
+            sides |= 1 << (3 * (np.sign(di) + 1) + np.sign(dj) + 1)
+            # Second moments of this cell about the middle of the first.
+            k = s[0]
+            qx, qy, qz = s[1] / k - m[0], s[2] / k - m[1], s[3] / k - m[2]
+            xx = s[4] - s[1] * s[1] / k + k * qx * qx
+            xy = s[5] - s[1] * s[2] / k + k * qx * qy
+            xz = s[6] - s[1] * s[3] / k + k * qx * qz
+            yy = s[7] - s[2] * s[2] / k + k * qy * qy
+            yz = s[8] - s[2] * s[3] / k + k * qy * qz
+            zz = s[9] - s[3] * s[3] / k + k * qz * qz
+            u = a[0, 0] * qx + a[0, 1] * qy + a[0, 2] * qz
+            v = a[1, 0] * qx + a[1, 1] * qy + a[1, 2] * qz
+            h = a[2, 0] * qx + a[2, 1] * qy + a[2, 2] * qz
+            n += k
+            su += k * u
+            sv += k * v
+            sh += k * h
+            suu += _form(a[0], a[0], xx, xy, xz, yy, yz, zz)
+            suv += _form(a[0], a[1], xx, xy, xz, yy, yz, zz)
+            svv += _form(a[1], a[1], xx, xy, xz, yy, yz, zz)
+            suh += _form(a[0], a[2], xx, xy, xz, yy, yz, zz)
+            svh += _form(a[1], a[2], xx, xy, xz, yy, yz, zz)
+            shh += _form(a[2], a[2], xx, xy, xz, yy, yz, zz)
+            bright = middle[d, 3] - m[3]
+            b += k * bright
+            bu += k * bright * u
+            bv += k * bright * v
+    # Neighbours on both sides, along both directions: bits of (−1, 0), (1, 0), (0, −1), (0, 1).
+    if n < 6 or (sides & 2) == 0 or (sides & 128) == 0 or (sides & 8) == 0 or (sides & 32) == 0:
+        return
+    suu -= su * su / n
+    suv -= su * sv / n
+    svv -= sv * sv / n
+    suh -= su * sh / n
+    svh -= sv * sh / n
+    shh -= sh * sh / n
+    bu -= b * su / n
+    bv -= b * sv / n
+    det = suu * svv - suv * suv
+    if not det > 1e-6 * (suu + svv) ** 2:
+        return
+    gu = (svv * suh - suv * svh) / det
+    gv = (suu * svh - suv * suh) / det
+    size = np.sqrt(1.0 + gu * gu + gv * gv)
+    f = found[c]
+    for k in range(3):
+        f[k] = (a[2, k] - gu * a[0, k] - gv * a[1, k]) / size
+    f[3] = svv / det
+    f[4] = suu / det
+    f[5] = max(shh - gu * suh - gv * svh, 0.0) / max(n - 3.0, 1.0) / (size * size)
+    f[6] = n
+    f[7] = (svv * bu - suv * bv) / det
+    f[8] = (suu * bv - suv * bu) / det
+
+
+@numba.njit(cache=True, nogil=True, inline="always")
+def _form(
+    p: np.ndarray, q: np.ndarray, xx: float, xy: float, xz: float, yy: float, yz: float, zz: float
+) -> float:
+    """Give pᵀ M q of a symmetric matrix M."""
+    return (
+        p[0] * (xx * q[0] + xy * q[1] + xz * q[2])
+        + p[1] * (xy * q[0] + yy * q[1] + yz * q[2])
+        + p[2] * (xz * q[0] + yz * q[1] + zz * q[2])
+    )

@@ -1,0 +1,278 @@
+"""Correct the ways of a vehicle by what its scans show of the same places.
+
+The order: the logs alone; then tiles of one leg in another, first within each pass, where the log
+errs least between the two looks, then between passes; then facets, paired anew after each step.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+from jaxtyping import Float
+
+from ...errors import InputError
+from ...types.arrays import Scalars
+from ...types.trajectory import Trajectory
+from .doubt import Doubt
+from .first_path import first_path
+from .legs import Facets, Leg, Pass, cut_legs, make_facets
+from .log_terms import Log
+from .pairs import make_side, pair_facets
+from .path import WIDTH, Path
+from .settings import AdjustSettings
+from .solve import State, draw_errors, improve
+from .ties import Ties, as_seen
+from .tiles import Relief, make_relief, tie_tiles
+from .unknowns import Layout
+
+_MODES = 64
+"""Errors that are drawn to state the uncertainty: σ to one part in eleven."""
+_ENOUGH = 5
+"""Tiles that agree before two passes count as laid on one another to a bump's width."""
+_DRAWS = 24
+"""Errors that are drawn to say how far tiles may lie from their place: σ to one part in seven."""
+_MORE = 1.05
+"""Growth of the count of tiles that were found which is worth another look."""
+_FULL, _ALL = 3, 10**9
+"""Rounds at the end which take all facets."""
+_SETTLED = 0.01e-3
+"""Change of the paths (RMS) in a fine round at which it ends [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Adjusted:
+    """The ways of some passes, as their logs and what they saw together say."""
+
+    paths: tuple[Path, ...]
+    as_logged: tuple[Path, ...]
+    """By the logs alone."""
+    state: State
+    logs: tuple[Log, ...]
+    groups: tuple[Ties, ...]
+    """The last ties, of each pair of legs."""
+    errors: Float[np.ndarray, "u m"]
+    """Independent errors of all unknowns, each of one standard deviation."""
+
+    def trajectory(self, number: int, times: Scalars) -> Trajectory:
+        """Compute world_from_vehicle of a pass, with its errors.
+
+        Args:
+            number: Of the pass.
+            times: When [s], strictly increasing.
+        """
+        layout = self.logs[number].layout
+        start, size = layout.starts[number], layout.sizes[number]
+        own = self.errors[start : start + size].reshape(-1, WIDTH, self.errors.shape[1])
+        return self.paths[number].as_trajectory(times, own)
+
+    def instrument_errors(self, number: int) -> dict[str, tuple[float, float]]:
+        """Estimate the errors of a pass's instruments: biases, drifts, clock, the speed's factor.
+
+        Returns:
+            Of each that the log's accuracy leaves open: what was found, and its standard deviation,
+            in m, s and rad.
+        """
+        found = {}
+        for place, stated in self.logs[number].priors():
+            if stated > 0:
+                sigma = float(np.linalg.norm(self.errors[place]))
+                name = self.logs[number].layout.name(place)
+                found[name] = float(self.state.errors[place]), sigma
+        return found
+
+
+def adjust_passes(
+    passes: Sequence[Pass],
+    settings: AdjustSettings | None = None,
+    *,
+    tell: Callable[[str], None] = lambda words: None,
+) -> Adjusted:
+    """Correct the ways of passes over one object, in one world.
+
+    Args:
+        passes: Their profiles and logs.
+        settings: What is taken for granted.
+        tell: Is told what is being done.
+
+    Raises:
+        InputError: There is no pass, or one without profiles.
+    """
+    settings = settings or AdjustSettings()
+    state, logs = _start(passes, settings)
+    state = improve(state, logs, [], settings, steps=4)
+    as_logged = state.paths
+    legs = [
+        leg
+        for number, (one, path) in enumerate(zip(passes, state.paths, strict=True))
+        for leg in cut_legs(number, one, path, settings.cell)
+    ]
+    matched: set[tuple[int, int]] = set()
+    groups: list[Ties] = []
+    for within in (True, False):
+        state, found = _lay_roughly(state, logs, legs, groups, settings, tell, within=within)
+        matched |= _matched(found)
+        rounds = settings.fine_rounds if not within or len(passes) == 1 else settings.inner_rounds
+        state, groups = _lay_finely(
+            state, logs, legs, matched, settings, tell, rounds=rounds, within=within
+        )
+        if len(passes) == 1:
+            break
+    errors = draw_errors(state, logs, groups, settings, count=_MODES, as_seen=True)
+    return Adjusted(state.paths, as_logged, state, logs, tuple(groups), errors / np.sqrt(_MODES))
+
+
+def _start(passes: Sequence[Pass], settings: AdjustSettings) -> tuple[State, tuple[Log, ...]]:
+    if not passes or any(len(one.times) < 2 for one in passes):
+        raise InputError("An adjustment needs at least one pass, and two profiles in each.")
+    paths = [
+        first_path(one.navigation, float(one.times[0]), float(one.times[-1]), settings.knot_step)
+        for one in passes
+    ]
+    layout = Layout.of(paths, [one.navigation.instruments for one in passes])
+    begun: dict[int, float] = {}
+    for one in passes:
+        known = begun.setdefault(one.navigation.instruments, float(one.times[0]))
+        begun[one.navigation.instruments] = min(known, float(one.times[0]))
+    logs = tuple(
+        Log(number, one.navigation, layout,
+            float(one.times[0]) - begun[one.navigation.instruments])
+        for number, one in enumerate(passes)
+    )  # fmt: skip
+    return State(tuple(paths), np.zeros(layout.count)), logs
+
+
+def _lay_roughly(
+    state: State,
+    logs: Sequence[Log],
+    legs: Sequence[Leg],
+    known: Sequence[Ties],
+    settings: AdjustSettings,
+    tell: Callable[[str], None],
+    *,
+    within: bool,
+) -> tuple[State, list[Ties]]:
+    """Tie tiles within passes, or between them, beside the ties that are known."""
+    found: list[Ties] = []
+    for _ in range(settings.rounds):
+        reliefs = [make_relief(make_facets(leg, state.paths[leg.number])) for leg in legs]
+        errors = draw_errors(state, logs, [*known, *found], settings, count=_DRAWS)
+        count = _count(found)
+        found = [
+            _carried(ties, state)
+            for i, j in combinations(range(len(legs)), 2)
+            if _are_to_meet(legs[i], legs[j], within=within)
+            for ties in _tie_legs(reliefs[i], reliefs[j], state, errors, settings, logs)
+        ]
+        state = improve(state, logs, [*known, *found], settings, steps=6)
+        tell(f"{_count(found)} tiles {'within' if within else 'between'} passes")
+        if _count(found) <= _MORE * count:
+            break
+    return state, found
+
+
+def _count(found: Sequence[Ties]) -> int:
+    """Count tiles: each has three ties."""
+    return sum(map(len, found)) // 3
+
+
+def _matched(found: Sequence[Ties]) -> set[tuple[int, int]]:
+    """Give the pairs of passes whose tiles have found one another."""
+    tiles: Counter[tuple[int, int]] = Counter()
+    for ties in found:
+        if len(ties):
+            tiles[int(ties.pass_a[0]), int(ties.pass_b[0])] += len(ties) // 3
+    return {pair for pair, count in tiles.items() if count >= _ENOUGH}
+
+
+def _are_to_meet(a: Leg, b: Leg, *, within: bool) -> bool:
+    """Tell whether tiles of one leg are looked for in another: between passes by one laser each."""
+    return a.number == b.number if within else a.number != b.number and a.laser == b.laser
+
+
+def _tie_legs(
+    a: Relief,
+    b: Relief,
+    state: State,
+    errors: Float[np.ndarray, "u m"],
+    settings: AdjustSettings,
+    logs: Sequence[Log],
+) -> list[Ties]:
+    if not _meet(a.facets, b.facets, settings.reach):
+        return []
+    leg, layout = a.facets.leg, logs[0].layout
+    one, other = leg.number, b.facets.leg.number
+    shares = [
+        errors[start : start + size].reshape(-1, 6, errors.shape[1])
+        for start, size in zip(layout.starts, layout.sizes, strict=True)
+    ]
+    doubt = Doubt(state.paths[one], state.paths[other], shares[one], shares[other], settings.reach)
+    forward = state.paths[one].at(leg.row_times).rotations[:, :, 0]
+    return [tie_tiles(a, b, settings.tile, doubt, forward)]
+
+
+def _carried(ties: Ties, state: State) -> Ties:
+    """Carry both points from the world to the vehicles."""
+    return replace(
+        ties,
+        point_a=as_seen(ties.pass_a, ties.time_a, ties.point_a, state.paths),
+        point_b=as_seen(ties.pass_b, ties.time_b, ties.point_b, state.paths),
+    )
+
+
+def _meet(a: Facets, b: Facets, reach: float) -> bool:
+    """Tell whether the boxes about two legs meet."""
+    if not (len(a) and len(b)):
+        return False
+    low = np.maximum(a.points.min(axis=0), b.points.min(axis=0))
+    high = np.minimum(a.points.max(axis=0), b.points.max(axis=0))
+    return bool(np.all(low <= high + reach))
+
+
+def _lay_finely(
+    state: State,
+    logs: Sequence[Log],
+    legs: Sequence[Leg],
+    matched: set[tuple[int, int]],
+    settings: AdjustSettings,
+    tell: Callable[[str], None],
+    *,
+    rounds: int,
+    within: bool,
+) -> tuple[State, list[Ties]]:
+    """Pair facets anew after each step, until nothing moves; within passes alone or all."""
+    groups: list[Ties] = []
+    for number in range(rounds):
+        sides = [make_side(make_facets(leg, state.paths[leg.number])) for leg in legs]
+        reach = max(8e-3 / 2**number, 1e-3)
+        most = settings.ties if number < rounds - _FULL or within else _ALL
+        groups = [
+            pair_facets(
+                sides[i],
+                sides[j],
+                reach,
+                most,
+                bumps_match=(legs[i].number, legs[j].number) in matched,
+            )
+            for i, j in combinations(range(len(legs)), 2)
+            if (legs[i].number == legs[j].number or not within)
+            and _meet(sides[i].facets, sides[j].facets, reach)
+        ]
+        if not groups:
+            break
+        before, state = state, improve(state, logs, groups, settings, steps=3)
+        moved = _change(before, state)
+        tell(f"fine round {number}: {sum(map(len, groups))} ties, moved {moved * 1e3:.3f} mm")
+        if moved < _SETTLED:
+            break
+    return state, groups
+
+
+def _change(before: State, after: State) -> float:
+    """Give how far the paths have moved, RMS [m]."""
+    changes: list[Scalars] = []
+    for one, two in zip(before.paths, after.paths, strict=True):
+        times = np.linspace(one.knots.start, one.knots.end, 10 * one.knots.num_pieces)
+        changes.append(np.linalg.norm(one.at(times).positions - two.at(times).positions, axis=1))
+    return float(np.sqrt(np.mean(np.concatenate(changes) ** 2)))

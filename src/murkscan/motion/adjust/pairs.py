@@ -1,0 +1,144 @@
+"""Facets of two legs that lie on one another."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ...types.arrays import Directions, Indices, Scalars
+from .legs import Facets
+from .ties import Ties
+from .tiles import make_heights
+
+_PATCH = 16
+"""Cells of a patch, along and across, over which a surface counts as plain or rough as a whole."""
+_AGREE = 0.8
+"""Cosine of the angle between normals up to which two facets may be of one surface."""
+_BEYOND = 1.0
+"""Cells by which the nearest facet may lie aside; beyond that the leg's rim has been passed."""
+_GOLDEN = (5**0.5 - 1) / 2
+_CERTAIN = 2.0
+"""How many times over the noise of normals a slope must stand to count."""
+
+
+@dataclass(frozen=True, eq=False)
+class Side:
+    """A leg's facets, made ready to be paired."""
+
+    facets: Facets
+    tree: cKDTree
+    directions: Directions
+    """Normals of which only that counts which is no noise."""
+    smooth: Directions
+    """Mean normals of patches: what counts where bumps may not be those of the other leg."""
+    relief: float
+    """Variance of the bumps that these leave [m²]."""
+
+
+def make_side(facets: Facets) -> Side:
+    """Make a leg's facets ready to be paired."""
+    directions, smooth = steady_normals(facets)
+    heights = make_heights(facets)
+    return Side(facets, cKDTree(facets.points), directions, smooth, float(np.var(heights)))
+
+
+def steady_normals(facets: Facets) -> tuple[Directions, Directions]:
+    """Compute normals without noise, and the mean normals of patches.
+
+    Draw normals towards their patch's mean as far as noise alone made them differ.
+
+    On a plain surface normals differ by noise only, and would seem to fix the shift along it: the
+    share of a slope that noise explains is taken away (James and Stein, Estimation with quadratic
+    loss, 1961), patch by patch.
+    """
+    leg = facets.leg
+    patches = -(-leg.num_columns // _PATCH)
+    patch = (facets.row // _PATCH) * patches + facets.column // _PATCH
+    _, which = np.unique(patch, return_inverse=True)
+    count = np.bincount(which)
+    mean = np.stack([np.bincount(which, n) for n in facets.normals.T], axis=1) / count[:, None]
+    off = facets.normals - mean[which]
+    seen = np.bincount(which, np.einsum("ni,ni->n", off, off)) / count
+    noise = np.bincount(which, facets.variance * facets.slope_variance.sum(axis=1)) / count
+    share = np.clip(1 - _CERTAIN * noise / np.maximum(seen, 1e-300), 0, 1)
+    steady = mean[which] + share[which, None] * off
+    return (
+        steady / np.linalg.norm(steady, axis=1, keepdims=True),
+        mean[which] / np.linalg.norm(mean[which], axis=1, keepdims=True),
+    )
+
+
+def pair_facets(a: Side, b: Side, reach: float, most: int, *, bumps_match: bool) -> Ties:
+    """Tie the facets of one leg to those of another that lie nearest.
+
+    The direction is the mean normal of both, which takes the curve out of the distance between
+    their middles to second order (Rusinkiewicz, A symmetric objective function for ICP, SIGGRAPH
+    2019).
+
+    Args:
+        a: The one leg.
+        b: The other.
+        reach: How far along the normal they may lie apart [m].
+        most: Ties that are enough; of more, some are drawn, always the same.
+        bumps_match: Whether the legs lie within a bump's width of one another. Where that is not
+            known, bumps are noise, and ties say nothing of the shift along the surface: otherwise
+            they would hold the legs wherever they lie.
+    """
+    first = _draw(np.arange(len(a.facets)), 2 * most)
+    size = max(a.facets.leg.size, b.facets.leg.size)
+    found = b.tree.query(
+        a.facets.points[first], distance_upper_bound=float(np.hypot(reach, _BEYOND * size))
+    )
+    distance, second = np.asarray(found[0]), np.asarray(found[1])
+    near = np.isfinite(distance)
+    ties = _tie(a, b, first[near], second[near], reach, bumps_match=bumps_match)
+    return ties[_draw(np.arange(len(ties)), most)]
+
+
+def _draw(which: Indices, most: int) -> Indices:
+    """Draw some of many, spread evenly and without a pattern: by multiples of the golden ratio."""
+    if len(which) <= most:
+        return which
+    return which[(which * _GOLDEN) % 1.0 < most / len(which)]
+
+
+def _tie(
+    a: Side, b: Side, first: Indices, second: Indices, reach: float, *, bumps_match: bool
+) -> Ties:
+    one, two = a.facets, b.facets
+    size = max(one.leg.size, two.leg.size)
+    direction = (
+        a.directions[first] + b.directions[second]
+        if bumps_match
+        else a.smooth[first] + b.smooth[second]
+    )
+    length = np.linalg.norm(direction, axis=1)
+    direction /= np.maximum(length, 1e-12)[:, None]
+    between = one.points[first] - two.points[second]
+    off = np.einsum("ni,ni->n", direction, between)
+    aside = between - off[:, None] * direction
+    lateral = np.linalg.norm(aside, axis=1)
+    kept = (length > 2 * _AGREE) & (np.abs(off) < reach) & (lateral < _BEYOND * size)
+    first, second, aside = first[kept], second[kept], aside[kept]
+    variance = _variance(one, first, aside) + _variance(two, second, aside)
+    if not bumps_match:
+        variance = variance + a.relief + b.relief
+    count = len(first)
+    return Ties(
+        np.full(count, one.leg.number),
+        one.leg.row_times[one.row[first]],
+        one.own[first],
+        np.full(count, two.leg.number),
+        two.leg.row_times[two.row[second]],
+        two.own[second],
+        direction[kept],
+        np.zeros(count),
+        variance,
+    )
+
+
+def _variance(facets: Facets, which: Indices, aside: Directions) -> Scalars:
+    """Give what one facet adds to a tie's variance: of its middle, and of its slope far from it."""
+    along = np.einsum("ni,nki->nk", aside, facets.axes[which])
+    slope = np.einsum("nk,nk->n", along**2, facets.slope_variance[which]) / 4
+    return facets.variance[which] * (1 / facets.count[which] + slope)

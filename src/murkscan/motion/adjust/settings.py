@@ -1,0 +1,41 @@
+"""What an adjustment takes for granted, each number with its reason."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class AdjustSettings:
+    """Settings of `adjust_passes`."""
+
+    knot_step: float = 0.4
+    """Length of a spline's piece [s]: a small vehicle turns its motion round in a second or more,
+    and at 0.8 s pieces leave tenths of a millimetre of it."""
+    acceleration: float = 0.2
+    """Usual acceleration of a vehicle that scans, along each axis [m/s²]: a thruster's push on a
+    vehicle of some ten kilograms. Weak: it only holds what nothing else does."""
+    turn_acceleration: float = 0.4
+    """The same of its turn about each axis [rad/s²]."""
+    speed_wander: float = 0.2
+    """How a speed that is only about known wanders, as a share of it, and velocity across it."""
+    attitude_wander: float = np.deg2rad(3.0)
+    """How an attitude that no instrument measured wanders [rad]."""
+    wander_time: float = 2.5
+    """Time over which either goes together with itself [s]: waves and a pilot's hand."""
+    cell: float = 5e-3
+    """Size of a facet [m]: below it is noise, above it marine growth is no plane."""
+    tile: tuple[float, float] = (0.06, 0.15)
+    """Size of a tile that is looked for in another sheet, along and across the way [m]: short
+    along, since an uneven speed stretches it; wide enough for a score of bumps."""
+    reach: float = 0.2
+    """How far from its place by the log a tile is looked for at most [m], where the log is so
+    uncertain: farther away more and more tiles look alike."""
+    rounds: int = 5
+    """How often tiles are looked for, at most: each time they are less stretched."""
+    fine_rounds: int = 10
+    """How often facets are paired, at most."""
+    inner_rounds: int = 6
+    """How often facets are paired within passes before passes are looked for in one another."""
+    ties: int = 10_000
+    """Pairs of facets between two legs, at most: more add little and cost time."""

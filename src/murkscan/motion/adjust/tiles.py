@@ -1,0 +1,273 @@
+"""Tiles of one leg's relief, looked for in another leg's: rough ties over centimetres.
+
+Fine pairs need the legs to lie within a bump's width of one another. Before that, tiles of the
+relief (what a leg's own smooth surface leaves) are correlated with the other leg's.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+from scipy.ndimage import uniform_filter
+from scipy.spatial import cKDTree
+
+from ..._kernels.tiles import correlate, draw_relief
+from ...types.arrays import Indices, Points, Scalars, Vector
+from .doubt import Doubt
+from .legs import Facets
+from .ties import Ties
+
+_SMOOTH = 0.06
+"""Size over which a leg's surface is its own mean [m]: below it, relief."""
+_SCORE = 0.5
+"""Correlation below which nothing has been found."""
+_CLEARER = 0.12
+"""By how much the second best must lie below the best."""
+_FILLED = 0.4
+"""Share of a tile that must lie on the other leg."""
+_FEWEST = 40
+"""Facets below which a tile is none."""
+_FLATTEST = 0.05e-3
+"""RMS of a relief below which there is nothing to find [m]."""
+_FAR = 6.0
+"""Pixels beyond which tiles are looked for in pixels of twice the size."""
+_SIGMA_ASIDE = 0.35
+"""Standard deviation of a found place, in pixels of a relief's image."""
+_SIGMA_OFF = 0.5e-3
+"""Standard deviation of a found distance along the normal [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Relief:
+    """A leg's facets, each with how far it stands out of the leg's own smooth surface."""
+
+    facets: Facets
+    tree: cKDTree
+    heights: Scalars
+    """[m]"""
+
+
+def make_relief(facets: Facets) -> Relief:
+    """Make a leg's relief."""
+    return Relief(facets, cKDTree(facets.points), make_heights(facets))
+
+
+def make_heights(facets: Facets) -> Scalars:
+    """Compute how far each facet stands out of its leg's own smooth surface [m]."""
+    leg = facets.leg
+    shape = (len(leg.row_times), leg.num_columns)
+    window = 2 * round(_SMOOTH / leg.size / 2) + 1
+
+    def smooth(values: Scalars) -> Scalars:
+        image = np.zeros(shape)
+        image[facets.row, facets.column] = values
+        return uniform_filter(image, window, mode="constant")[facets.row, facets.column]
+
+    share = smooth(np.ones(len(facets)))
+    origin = facets.points.mean(axis=0)
+    mean = np.stack([smooth(p) for p in (facets.points - origin).T], axis=1) / share[:, None]
+    normal = np.stack([smooth(n) for n in facets.normals.T], axis=1)
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    return np.einsum("ni,ni->n", facets.points - origin - mean, normal)
+
+
+@dataclass(frozen=True, eq=False)
+class _Found:
+    """Where a tile lies in the other leg."""
+
+    which: Indices
+    """Facets of the tile."""
+    frame: Float[np.ndarray, "3 3"]
+    """Rows: along the way, across it, the normal."""
+    shift: Vector
+    """From where the tile lies to where it belongs [m]."""
+    score: float
+    time: float
+
+
+def tie_tiles(
+    a: Relief,
+    b: Relief,
+    tile: tuple[float, float],
+    doubt: Doubt,
+    forward: Float[np.ndarray, "r 3"],
+) -> Ties:
+    """Look for the tiles of one leg in another.
+
+    Args:
+        a: Whose tiles are looked for.
+        b: In which.
+        tile: Size along and across the way [m].
+        doubt: How far from where it lies now a tile may be.
+        forward: Direction of the way at each row of `a`.
+    """
+    found = []
+    for which in _cut(a.facets, tile):
+        place = _find(a, b, which, tile, doubt, forward)
+        if place is not None:
+            found.append(place)
+    return _as_ties(a.facets, b, _consistent(found, a.facets.leg.size), a.facets.leg.size)
+
+
+def _cut(facets: Facets, tile: tuple[float, float]) -> list[Indices]:
+    """Give the facets of each tile."""
+    leg = facets.leg
+    rows, columns = (max(round(t / leg.size), 2) for t in tile)
+    # Tiles of the same width over all of the line, none of them narrow.
+    num = max(leg.num_columns // columns, 1)
+    piece = np.minimum(facets.column * num // leg.num_columns, num - 1)
+    key = facets.row // rows * num + piece
+    order = np.argsort(key, kind="stable")
+    parts = np.split(order, np.flatnonzero(np.diff(key[order])) + 1)
+    return [part for part in parts if len(part) >= _FEWEST]
+
+
+def _find(
+    a: Relief,
+    b: Relief,
+    which: Indices,
+    tile: tuple[float, float],
+    doubt: Doubt,
+    forward: Float[np.ndarray, "r 3"],
+) -> _Found | None:
+    facets, pitch = a.facets, max(a.facets.leg.size, b.facets.leg.size)
+    centre = facets.points[which].mean(axis=0)
+    frame = _frame(facets.normals[which].mean(axis=0), forward[facets.row[which[0]]])
+    half = float(np.hypot(*tile)) / 2
+    nearest = b.tree.query(centre, distance_upper_bound=half + doubt.most)[1]
+    if nearest == b.tree.n:
+        return None
+    reach = doubt.reach(
+        centre,
+        facets.leg.row_times[facets.row[which[0]]],
+        b.facets.leg.row_times[b.facets.row[nearest]],
+        frame[:2],
+        4 * pitch,
+    )
+    if reach.max() > _FAR * pitch:
+        pitch *= 2
+    there = np.asarray(b.tree.query_ball_point(centre, half + float(np.hypot(*reach))), np.int64)
+    if len(there) < _FEWEST:
+        return None
+    # Another side of a thin plate is not what is looked for.
+    there = there[b.facets.normals[there] @ frame[2] > 0]
+    own = (facets.points[which] - centre) @ frame.T
+    other = (b.facets.points[there] - centre) @ frame.T
+    corner, size = own[:, :2].min(axis=0), np.ptp(own[:, :2], axis=0)
+    shape = np.ceil(size / pitch).astype(int) + 2
+    margin = np.ceil(reach / pitch).astype(int)
+    small = draw_relief(
+        own[:, 0] - corner[0], own[:, 1] - corner[1], a.heights[which], pitch, *shape
+    )
+    start = corner - margin * pitch
+    large = draw_relief(
+        other[:, 0] - start[0],
+        other[:, 1] - start[1],
+        b.heights[there],
+        pitch,
+        *(shape + 2 * margin),
+    )
+    filled = np.isfinite(small)
+    if filled.sum() < _FEWEST / 2 or np.nanstd(small) < _FLATTEST:
+        return None
+    scores = correlate(small, large, int(_FILLED * filled.sum()))
+    peak = _peak(scores)
+    if peak is None:
+        return None
+    moved, score = (np.array(peak[:2]) - margin) * pitch, peak[2]
+    off = _offset_along_normal(own, other, moved, pitch)
+    if off is None:
+        return None
+    shift = moved[0] * frame[0] + moved[1] * frame[1] + off * frame[2]
+    time = float(facets.leg.row_times[facets.row[which]].mean())
+    return _Found(which, frame, shift, score, time)
+
+
+def _frame(normal: Vector, forward: Vector) -> Float[np.ndarray, "3 3"]:
+    normal = normal / np.linalg.norm(normal)
+    along = forward - (forward @ normal) * normal
+    along /= max(float(np.linalg.norm(along)), 1e-12)
+    return np.stack([along, np.cross(normal, along), normal])
+
+
+def _peak(scores: Float[np.ndarray, "h w"]) -> tuple[float, float, float] | None:
+    """Find the best place to a fraction of a pixel; None where it is not clear or at the rim."""
+    if not np.isfinite(scores).any():
+        return None
+    i, j = np.unravel_index(int(np.nanargmax(scores)), scores.shape)
+    best = float(scores[i, j])
+    if best < _SCORE or not (0 < i < scores.shape[0] - 1 and 0 < j < scores.shape[1] - 1):
+        return None
+    others = scores.copy()
+    others[max(i - 3, 0) : i + 4, max(j - 3, 0) : j + 4] = np.nan
+    if np.isfinite(others).any() and np.nanmax(others) > best - _CLEARER:
+        return None
+    around = scores[i - 1 : i + 2, j - 1 : j + 2]
+    if not np.isfinite(around).all():
+        return None
+    return (
+        float(i + _vertex(*around[:, 1])),
+        float(j + _vertex(*around[1])),
+        best,
+    )
+
+
+def _vertex(before: float, here: float, after: float) -> float:
+    """Give where the parabola through three scores is highest."""
+    bend = before - 2 * here + after
+    return 0.0 if bend >= 0 else float(np.clip(0.5 * (before - after) / bend, -0.5, 0.5))
+
+
+def _offset_along_normal(
+    own: Points, other: Float[np.ndarray, "k 3"], moved: Float[np.ndarray, "2"], pitch: float
+) -> float | None:
+    """Give how far a moved tile lies below the other leg [m]."""
+    found = cKDTree(other[:, :2]).query(own[:, :2] + moved, distance_upper_bound=pitch)
+    near = np.isfinite(found[0])
+    if near.sum() < _FEWEST / 2:
+        return None
+    return float(np.median(other[np.asarray(found[1])[near], 2] - own[near, 2]))
+
+
+def _consistent(found: list[_Found], pitch: float) -> list[_Found]:
+    """Keep the tiles whose shift is about that of those before and after."""
+    if len(found) < 3:
+        return []
+    times = np.array([one.time for one in found])
+    shifts = np.array([one.shift for one in found])
+    kept = []
+    for i, one in enumerate(found):
+        near = np.argsort(np.abs(times - times[i]), kind="stable")[1:8]
+        middle = np.median(shifts[near], axis=0)
+        spread = 1.5 * np.median(np.abs(shifts[near] - middle).max(axis=1))
+        if np.abs(one.shift - middle).max() <= max(3 * pitch, 3 * spread):
+            kept.append(one)
+    return kept
+
+
+def _as_ties(facets: Facets, b: Relief, found: list[_Found], pitch: float) -> Ties:
+    """Tie each tile's middle to where it belongs: along the way, across it, and the normal."""
+    count = 3 * len(found)
+    leg, other = facets.leg, b.facets.leg
+    time_a, time_b = np.empty(count), np.empty(count)
+    points, matched = np.empty((count, 3)), np.empty((count, 3))
+    rows = np.empty(count, np.int64)
+    for k, one in enumerate(found):
+        centre = facets.points[one.which].mean(axis=0)
+        nearest = int(b.tree.query(centre + one.shift)[1])
+        into = slice(3 * k, 3 * k + 3)
+        time_a[into], points[into] = one.time, centre
+        rows[into], matched[into] = b.facets.row[nearest], centre + one.shift
+        time_b[into] = other.row_times[b.facets.row[nearest]]
+    sigma = np.array([_SIGMA_ASIDE * pitch, _SIGMA_ASIDE * pitch, _SIGMA_OFF])
+    return Ties(
+        np.full(count, leg.number),
+        time_a,
+        points,
+        np.full(count, other.number),
+        time_b,
+        matched,
+        np.concatenate([one.frame for one in found]) if found else np.zeros((0, 3)),
+        np.zeros(count),
+        np.tile(sigma**2, len(found)),
+    )
