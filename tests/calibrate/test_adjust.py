@@ -10,7 +10,7 @@ from murkscan.calibrate.adjust.parameters import (
     sheet_parameters,
     window_parameters,
 )
-from murkscan.calibrate.adjust.residuals import State, linearise, residuals_of
+from murkscan.calibrate.adjust.residuals import Observations, State, linearise, residuals_of
 from murkscan.calibrate.adjust.solve import adjust
 from murkscan.errors import Degenerate, InputError
 from murkscan.optics import perturb_rig
@@ -33,9 +33,9 @@ def start(rig, count=3):
     random = np.random.default_rng(0)
     seen = [*see_boards(random, rig, count), *see_stripes(random, rig, count)]
     names = names_of(rig)
-    observed = Observed.of(seen)
+    observed = Observations(Observed.of(seen))
     state = State(rig, names, np.zeros(len(names)), Boards.of(seen))
-    return state, observed, observed.pixels_to_sheet(rig, state.boards)
+    return state, observed, observed.seen.pixels_to_sheet(rig, state.boards)
 
 
 def richardson(change, step):

@@ -110,7 +110,7 @@ def spread_of_points(rig: Rig, laser: int, pixels: Pixels) -> Scalars:
     return np.sqrt(np.maximum(np.trace(covariances, axis1=1, axis2=2), 0.0))
 
 
-def _some(pixels: Pixels) -> Pixels:
+def _some(pixels: Pixels) -> Float[np.ndarray, "_ 2"]:
     """Pick some pixels, evenly along the list."""
     return pixels[np.linspace(0, len(pixels) - 1, min(len(pixels), _MANY)).astype(int)]
 

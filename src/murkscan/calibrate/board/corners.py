@@ -27,6 +27,9 @@ _INSIDE = 0.75
 """Share of the places where a missing row would be that lie in the picture, from which the board
 does not end at the picture's edge, but is another one."""
 
+Step = Float[np.ndarray, "2"]
+"""From one corner to another [px]."""
+
 
 def find_board(photo: Image, board: Chessboard, *, name: str = "") -> BoardView:
     """Find a chessboard, or as much of it as the picture shows, and refine its corners.
@@ -107,7 +110,7 @@ def square_middles(grid: Grid) -> tuple[Pixels, np.ndarray]:
     return middles[known], alike[known]
 
 
-def _scales(photo: Image) -> list[tuple[Image, float]]:
+def _scales(photo: Image) -> list[tuple[np.ndarray, float]]:
     """Make the photo smaller and smaller; a large one counts in half its size first."""
     images = [(photo, 1.0)]
     while len(images) < _NUM_SCALES and min(images[-1][0].shape) >= 2 * _SMALLEST:
@@ -157,7 +160,7 @@ def _orient(photo: Image, grid: Grid, board: Chessboard) -> tuple[Grid, bool]:
     return whole, is_first_dark
 
 
-def _directions(grid: Grid) -> tuple[Pixels, Pixels]:
+def _directions(grid: Grid) -> tuple[Step, Step]:
     """Compute the mean steps along the rows and down the columns [px]."""
     return (
         np.nanmean(np.diff(grid, axis=1), axis=(0, 1)),

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import cv2
 import numpy as np
-from jaxtyping import UInt8
+from jaxtyping import Float, UInt8
 
 from ...types.arrays import ColourImage, Pixels, Scalars
 from .chessboard import Chessboard
@@ -27,8 +27,8 @@ def draw_photo(
     board: Chessboard,
     note: str,
     *,
-    residuals: Pixels,
-    stripe: Pixels,
+    residuals: Float[np.ndarray, "_ 2"],
+    stripe: Float[np.ndarray, "_ 2"],
     distances: Scalars,
 ) -> Canvas:
     """Draw what was found in one photo, and a line of words.

@@ -40,6 +40,7 @@ _LEAST_PITCH = 6.0
 _BENT = 0.35
 """Difference of two edges' directions that perspective and lens leave [rad]."""
 
+Vector2 = Float[np.ndarray, "2"]
 Step = tuple[int, int]
 _STEPS: tuple[Step, ...] = ((1, 0), (-1, 0), (0, 1), (0, -1))
 
@@ -171,7 +172,7 @@ def _grow(saddles: Saddles, tree: cKDTree, seed: int) -> dict[Step, int]:
     return places
 
 
-def _neighbours_of(saddles: Saddles, tree: cKDTree, seed: int) -> tuple[Pixels, Pixels] | None:
+def _neighbours_of(saddles: Saddles, tree: cKDTree, seed: int) -> tuple[Vector2, Vector2] | None:
     """Find the steps to the next column and the next row; None where there are none."""
     here = saddles.pixels[seed]
     distances, numbers = tree.query(here, k=min(14, len(saddles.pixels)))

@@ -5,13 +5,16 @@ from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
+from jaxtyping import Float
 
 from ...optics import distance_to_sheet
-from ...types.arrays import Points, Scalars
+from ...types.arrays import Scalars
 from ...types.laser import Laser
 from ...types.plane import Plane
 from .stripe import StripeOnBoard
 
+Line = Float[np.ndarray, "_ 3"]
+"""Points of one line in the camera frame [m]."""
 _ON_SHEET = 0.01
 """Distance of a line's points from a sheet, over their distance from the camera, within which the
 line is of that sheet: ten times what a calibrated sheet is off, a tenth of what two are apart."""
@@ -23,7 +26,7 @@ _MANY = 40
 
 def assign_lines(
     lines: Sequence[StripeOnBoard],
-    points: Sequence[Points],
+    points: Sequence[Line],
     numbers: Sequence[int],
     known: Mapping[int, Laser],
     index: float,
@@ -65,7 +68,7 @@ def assign_lines(
 
 
 def _largest_sheet(
-    left: Sequence[int], lines: Sequence[StripeOnBoard], points: Sequence[Points]
+    left: Sequence[int], lines: Sequence[StripeOnBoard], points: Sequence[Line]
 ) -> list[int]:
     """Find the lines of the sheet that passes through most photos."""
     best = list[int]()
@@ -80,7 +83,7 @@ def _largest_sheet(
     return best
 
 
-def _plane_through(first: Points, second: Points) -> Plane:
+def _plane_through(first: Line, second: Line) -> Plane:
     """Fit a plane to two lines, which count alike however long they are."""
     few = [p[np.linspace(0, len(p) - 1, _FEW).astype(int)] for p in (first, second)]
     both = np.concatenate(few)
@@ -89,7 +92,7 @@ def _plane_through(first: Points, second: Points) -> Plane:
 
 
 def _members(
-    plane: Plane, left: Sequence[int], lines: Sequence[StripeOnBoard], points: Sequence[Points]
+    plane: Plane, left: Sequence[int], lines: Sequence[StripeOnBoard], points: Sequence[Line]
 ) -> list[int]:
     """List the lines on a plane, the nearest one of each photo."""
     nearest = dict[str, tuple[float, int]]()
@@ -101,7 +104,7 @@ def _members(
     return [i for _, i in nearest.values()]
 
 
-def _is_on(off: Scalars, points: Points) -> bool:
+def _is_on(off: Scalars, points: Line) -> bool:
     distance = float(np.median(np.linalg.norm(points, axis=1)))
     return float(np.median(np.abs(off))) < _ON_SHEET * distance
 

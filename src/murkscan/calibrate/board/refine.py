@@ -21,7 +21,7 @@ makes: it is at a wrong place."""
 _FOR_CUBIC = 24
 """Corners from which the bend is a cubic one, of 10 terms."""
 
-Grid = Float[np.ndarray, "rows columns 2"]
+Grid = Float[np.ndarray, "_ _ 2"]
 """Corners as the board has them [px]; NaN where one was not found."""
 
 

@@ -85,7 +85,7 @@ def mask_to_sheet(
     outline = project(camera, camera_from_board @ np.concatenate(sides), index)
     mask = np.zeros_like(image)
     if np.isfinite(outline).all():
-        cv2.fillPoly(mask, [np.round(outline).astype(np.int32)], 1)
+        cv2.fillPoly(mask, [np.clip(np.round(outline), -30000, 30000).astype(np.int32)], 1)
     return image * mask
 
 
