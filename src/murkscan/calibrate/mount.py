@@ -203,7 +203,7 @@ def _adjust(
 
 def _gather(
     views: Sequence[BoardView], times: Scalars, log: Trajectory, board: Chessboard, rig: Rig
-) -> tuple[list[Sighting], Float[np.ndarray, "_"]]:
+) -> tuple[list[Sighting], Float[np.ndarray, "..."]]:
     """Locate the board in each photo; refuse too few, and a log of another time."""
     found = [i for i, view in enumerate(views) if view.is_found and view.is_placed]
     if len(found) < MIN_VIEWS:
