@@ -34,4 +34,7 @@ camera's axis (see `real_stage.py`); *scatter* is the median absolute deviation.
 above it, so there are two to measure.
 
 On `steps.png` a piece is found in a scan line where a point lies within 2.5 px of it; *elsewhere*
-is all but the five pieces and the faint sixth."""
+is all but the five pieces and the faint sixth.
+
+*maximum* and *find-peaks* (with `--peers`) are what users write themselves: the brightest pixel of
+a scan line with a centroid around it, and `scipy.signal.find_peaks`."""
