@@ -5,6 +5,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from ..errors import InputError
 from .paths import ScanFolder, require_scan
 from .progress import progress_bars
 from .typed import WORDS
@@ -19,6 +20,8 @@ def view(
     as_given: Flag = False,
     deviation: str = "deviation",
     points: int = 2_000_000,
+    title: str | None = None,
+    film: Path | None = None,
 ) -> None:
     """Draw a scan's surface from seven sides, and write a page to turn, cut and measure it.
 
@@ -37,21 +40,32 @@ def view(
     points
         Points, and vertices of the surface, that the page holds of a scan; of more it shows a fair
         choice.
+    title
+        What stands above the page; the recording's name unless given.
+    film
+        Write a film of the surface turned once round to this file, too: .mp4.
     """
-    from ..project import Project
-    from ..survey.view import draw_views
-    from .summary import print_result
-    from .words import say
-
+    if film is not None and film.suffix.lower() != ".mp4":
+        raise InputError(f"--film writes .mp4, not {film.name}.")
     with progress_bars() as progress:
+        from ..project import Project
+        from ..survey.view import draw_views, film_scan
+        from .summary import print_result
+        from .words import say
+
         result = draw_views(
             Project(out, WORDS.get()),
             other=None if other is None else Project(other),
             align=not as_given,
             deviation=deviation,
             most=points,
+            title=title,
             progress=progress,
         )
+        if film is not None:
+            film_scan(Project(out), film, progress=progress)
     if result.relation:
         say(result.relation)
     print_result("view", result, out / "view" / "index.html")
+    if film is not None:
+        print(f"film: {film}")

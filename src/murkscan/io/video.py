@@ -19,6 +19,7 @@ _FORMATS = {"h264": "yuv420p", "h265": "yuv420p", "mjpeg": "yuvj420p"}
 LOSSLESS = {"level": "3", "slices": "4", "slicecrc": "1", "g": "1"}
 """FFV1's options: slices of their own let a damaged file lose little, and several cores work at
 once."""
+_CONTAINERS = {".mp4": "mp4"}
 _TICKS = 90_000
 """Ticks a second of the times; the container rounds them to milliseconds."""
 
@@ -36,7 +37,7 @@ def writing_video(
     interlaced: bool = False,
     is_colour: bool = False,
 ) -> Iterator[Callable[[np.ndarray, float], None]]:
-    """Write pictures as a Matroska video that appears whole or not at all.
+    """Write pictures as a video that appears whole or not at all: MP4 by its suffix, else Matroska.
 
     Args:
         path: Where the video shall be.
@@ -86,7 +87,9 @@ def writing_video(
 @contextmanager
 def _open(path: Path, aside: Path) -> Iterator[Any]:
     try:
-        with av.open(str(aside), "w", format="matroska") as container:
+        with av.open(
+            str(aside), "w", format=_CONTAINERS.get(path.suffix.lower(), "matroska")
+        ) as container:
             yield container
     except av.error.FFmpegError as error:
         raise DeviceError(f"Cannot write {path}: {error.strerror}. Make room.") from error

@@ -1,15 +1,21 @@
 """Show a scan's surface: pictures for print, and a page on which it is turned and measured."""
 
+from pathlib import Path
+
 from ..errors import InputError
+from ..io.video import writing_video
 from ..page import Gallery, Note, Picture, Section, render_page
 from ..project import MESH, VIEW, Project, ViewResult
 from ..types.mesh import Mesh
-from ..view import MOST, PICTURES, draw_pictures, render_viewer
+from ..view import MOST, PICTURES, TURN, draw_pictures, draw_turn, render_viewer
 from .compared import Compared, compare_models
 from .merged import load_way
 from .progress import Progress, silent
 from .shown import DEVIATION, deviation_digest, has_surface, load_model, title_of
 from .stage_runner import run_stage
+
+_FILM, _RATE = (1280, 720), 24.0
+"""Size of a film [px], and pictures a second."""
 
 
 def draw_views(
@@ -19,6 +25,7 @@ def draw_views(
     align: bool = True,
     deviation: str = DEVIATION,
     most: int = MOST,
+    title: str | None = None,
     progress: Progress = silent,
 ) -> ViewResult:
     """Run the view stage: nine pictures, the page that shows them, and the page with the model.
@@ -30,6 +37,7 @@ def draw_views(
             put it.
         deviation: Name of the measurement whose deviations the page shows, if it has been made.
         most: Points, and vertices of the surface, that the page holds of a scan.
+        title: What stands above the page; the recording's name unless given.
         progress: Told how many pictures are drawn.
 
     Returns:
@@ -48,7 +56,9 @@ def draw_views(
         inputs["deviation"] = measured
     if other is not None:
         inputs["other"] = f"{other.root} {other.finished(MESH).digest}"
-    settings = {"most": most, "align": align and other is not None}
+    settings: dict[str, object] = {"most": most, "align": align and other is not None}
+    if title is not None:
+        settings["title"] = title
     stage = project.stage(VIEW, settings=settings, inputs=inputs)
 
     def prepare() -> tuple[Mesh | None, Compared]:
@@ -58,13 +68,37 @@ def draw_views(
     def make(prepared: tuple[Mesh | None, Compared]) -> ViewResult:
         surface, shown = prepared
         names = [] if surface is None else _draw(project, surface, progress)
-        title = title_of(project)
-        project.save_pictures_page(_pictures_page(title, names))
-        project.save_view_page(_page(title, shown))
+        name = title or title_of(project)
+        project.save_pictures_page(_pictures_page(name, names))
+        project.save_view_page(_page(name, shown))
         points = sum(model.num_measured for model in shown.models)
         return ViewResult(tuple(names), points, shown.relation, shown.alignment)
 
     return run_stage(project, stage, make, prepare=prepare, progress=progress)
+
+
+def film_scan(project: Project, path: Path, *, progress: Progress = silent) -> None:
+    """Write a film of the surface turned once round, as MP4 (H.264).
+
+    Args:
+        project: A scan, or a merged cloud, with a finished mesh stage.
+        path: The file, ending in .mp4.
+        progress: Told how many pictures are drawn.
+
+    Raises:
+        InputError: The file has another suffix.
+        MissingResult: The mesh stage has not been finished.
+        NotEnoughData: The scan has no surface.
+        DeviceError: The disk is full.
+    """
+    if path.suffix.lower() != ".mp4":
+        raise InputError(f"A film is written as .mp4, not as {path.name}.")
+    project.finished(MESH)
+    pictures = draw_turn(project.load_mesh(), load_way(project), size=_FILM)
+    with writing_video(path, _FILM, rate=_RATE, codec="h264", crf=20, is_colour=True) as write:
+        for number, picture in enumerate(pictures):
+            write(picture, number / _RATE)
+            progress("film", number + 1, TURN)
 
 
 def _load(

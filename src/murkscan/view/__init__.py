@@ -15,6 +15,8 @@ from .render import render as render
 from .shift_field import ShiftField as ShiftField
 from .shift_field import fit_shift_field as fit_shift_field
 from .thinned import choose_fairly as choose_fairly
+from .turn import TURN as TURN
+from .turn import draw_turn as draw_turn
 from .viewer_page import render_viewer as render_viewer
 from .views import View as View
 from .views import standard_views as standard_views

@@ -10,7 +10,7 @@ from ..types.trajectory import Trajectory
 from .base import AbstractColours
 from .depth import Depth
 from .plain import Plain
-from .render import draw
+from .render import fit_and_draw
 from .subject import Subject
 from .views import View, standard_views
 
@@ -46,7 +46,7 @@ def draw_pictures(
     subject = Subject.of(surface)
     # Letters are written here, since their library is made for one thread.
     with ThreadPoolExecutor(_THREADS) as pool:
-        drawings = pool.map(lambda job: draw(subject, job[1], job[2], size), jobs)
+        drawings = pool.map(lambda job: fit_and_draw(subject, job[1], job[2], size), jobs)
         for (name, _, _), drawing in zip(jobs, drawings, strict=True):
             yield name, drawing.write()
 

@@ -57,14 +57,22 @@ def render(
         NotEnoughData: There is nothing to draw.
         InputError: A point is not finite, or the picture is below 64 x 64 pixels.
     """
-    return draw(Subject.of(surface), view, colours or Plain(), size).write()
+    return fit_and_draw(Subject.of(surface), view, colours or Plain(), size).write()
 
 
-def draw(subject: Subject, view: View, colours: AbstractColours, size: tuple[int, int]) -> Drawing:
-    """Draw what is seen from one side; several threads may do so at once."""
+def fit_and_draw(
+    subject: Subject, view: View, colours: AbstractColours, size: tuple[int, int]
+) -> Drawing:
+    """Draw what is seen from one side, as large as the picture allows."""
+    points = subject.points @ view.view_from_world.T
+    has_bar = colours.legend(subject.points) is not None
+    return draw(subject, view, colours, Window.around(points, size, with_bar=has_bar))
+
+
+def draw(subject: Subject, view: View, colours: AbstractColours, window: Window) -> Drawing:
+    """Draw what is seen in a window; several threads may do so at once."""
     legend = colours.legend(subject.points)
     points = subject.points @ view.view_from_world.T
-    window = Window.around(points, size, with_bar=legend is not None)
     relief = subject.look(view, window.as_samples(points), window)
     return Drawing(_develop(relief, view, window, colours, legend), view, window, legend)
 

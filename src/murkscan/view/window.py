@@ -1,12 +1,12 @@
 """Where the surface lies in the picture, and what each of its pixels shows."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float32, Int, Int32
 
 from ..errors import InputError
-from ..types.arrays import Mask, Normals, Points
+from ..types.arrays import Mask, Normals, Points, Vector
 
 Depths = Float32[np.ndarray, "h w"]
 Owners = Int32[np.ndarray, "h w"]
@@ -52,6 +52,11 @@ class Window:
         scale = float(np.min(free / np.maximum(high - low, 1e-9)))
         u, v = start + free / 2 - scale * (low + high) / 2
         return cls(size, scale, (float(u), float(v)))
+
+    def centred_on(self, point: Vector) -> "Window":
+        """Show a point of the view frame [m] where the view frame's origin is shown now."""
+        u, v = self.centre
+        return replace(self, centre=(u - self.scale * point[0], v - self.scale * point[1]))
 
     def as_samples(self, points: Points) -> Points:
         """Give points of the view frame [m] as samples u, v and depth in the same unit."""
