@@ -19,6 +19,7 @@ from harness import Figure, tell
 from murkscan import PointCloud, Project
 from murkscan.project import CLOUD, CloudResult
 from murkscan.survey.export import export_cloud
+from murkscan.types.cloud_part import CloudPart
 
 SIZES = (20, 60, 200)
 """Millions of points."""
@@ -51,7 +52,7 @@ def part(number: int) -> PointCloud:
     return PointCloud(
         np.stack([number_of_frame * 1e-3, y, z], axis=1), normals, ones * 90, ones,
         ones * np.float32(2e-4), ones * np.float32(1e-4), number_of_frame,
-        line.astype(np.int32), np.zeros(count, np.uint8),
+        line.astype(np.int32), *np.zeros((2, count), np.uint8),
     )  # fmt: skip
 
 
@@ -65,9 +66,8 @@ def make_project(root: Path, millions: int) -> Project:
     stage = project.stage(CLOUD, settings={}, inputs={})
     since = time.monotonic()
     stage.begin()
-    with project.writing_cloud() as write:
-        for cloud in parts(millions):
-            write(cloud)
+    for number, cloud in enumerate(parts(millions)):
+        project.save_cloud_part(number, CloudPart.whole(cloud))
     stage.finish(CloudResult(millions * 1_000_000, outliers=0), since=since)
     return project
 

@@ -37,7 +37,7 @@ def make_cloud() -> PointCloud:
     normals = np.tile(np.array([0, 0, -1], np.float32), (len(points), 1))
     ones = np.ones(len(points), np.float32)
     laser = np.zeros(len(points), np.uint8)
-    return PointCloud(points, normals, *[ones] * 4, frame, line, laser)
+    return PointCloud(points, normals, *[ones] * 4, frame, line, laser, laser)
 
 
 def read_by_meshlab(path: Path) -> tuple[int, int, np.ndarray]:

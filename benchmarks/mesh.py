@@ -204,7 +204,7 @@ def wall_of(count: int) -> PointCloud:
     return PointCloud(
         np.stack([x, y, z], axis=1), np.tile(np.array([0, 0, -1], np.float32), (count, 1)),
         ones * 90, ones, ones * np.float32(2e-4), ones * np.float32(1e-4),
-        frame.astype(np.int32), line.astype(np.int32), np.zeros(count, np.uint8),
+        frame.astype(np.int32), line.astype(np.int32), *np.zeros((2, count), np.uint8),
     )  # fmt: skip
 
 

@@ -49,6 +49,7 @@ def sea_bed(profiles: int) -> tuple[PointCloud, Mesh]:
         frame=frame.astype(np.int32),
         scan_line=line.astype(np.int32),
         laser=np.zeros(len(x), np.uint8),
+        branch=np.zeros(len(x), np.uint8),
     )
     a = np.arange(len(x)).reshape(profiles, LINES)
     a, b, c, d = a[:-1, :-1].ravel(), a[:-1, 1:].ravel(), a[1:, :-1].ravel(), a[1:, 1:].ravel()

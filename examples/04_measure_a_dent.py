@@ -33,6 +33,7 @@ cloud = ms.PointCloud(
     frame=profile.astype(np.int32),
     scan_line=line.astype(np.int32),
     laser=np.zeros(count, np.uint8),
+    branch=np.zeros(count, np.uint8),
 )
 
 sample = Sample.from_cloud(cloud)

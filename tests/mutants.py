@@ -290,8 +290,9 @@ def _cloud() -> PointCloud:
     chance = np.random.default_rng(0)
     normals = np.tile(np.array([0, 0, -1], np.float32), (30, 1))
     ratio, number = np.ones(30, np.float32), np.arange(30, dtype=np.int32)
+    small = number.astype(np.uint8)
     return PointCloud(
-        chance.normal(size=(30, 3)), normals, *[ratio] * 4, number, number, number.astype(np.uint8)
+        chance.normal(size=(30, 3)), normals, *[ratio] * 4, number, number, small, small
     )
 
 

@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from murkscan.project import Kind, Project, RecordingRecord, ScanRecord, Stage
+from murkscan.types.cloud_part import CloudPart
 
 RECORDING = RecordingRecord("dive.mkv", "1", (640, 480), is_timed=True, fields_per_picture=1)
 SCAN = ScanRecord(versions={}, recording=RECORDING, rig={})
@@ -28,5 +29,5 @@ def finish(
 
 
 def save_cloud(project: Project, cloud: Any) -> None:
-    with project.writing_cloud() as write:
-        write(cloud)
+    project.save_cloud_part(0, CloudPart.whole(cloud))
+    project.export_cloud(frames=False)

@@ -85,6 +85,7 @@ def as_profile(
         sigma=ones * np.float32(sigma),
         signal=ones * 100,
         posterior=ones,
+        branch=np.zeros(len(points), np.uint8),
     )
 
 

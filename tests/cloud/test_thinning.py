@@ -25,7 +25,7 @@ def some_cloud(count=20_000, seed=0, *, sigma=(1e-4, 4e-4)):
         ones * np.float32(3e-4),
         np.arange(count, dtype=np.int32),
         np.arange(count, dtype=np.int32),
-        np.zeros(count, np.uint8),
+        *np.zeros((2, count), np.uint8),
     )
 
 
@@ -57,7 +57,7 @@ def test_a_well_known_point_counts_more():
     points = np.array([[0.3, 0.4, 0.201], [0.3, 0.4, 0.202]])
     two = PointCloud(points, cloud.normals, *(np.float32([a, b]) for a, b in (
         (10, 40), (1, 0.6), (1e-4, 2e-4), (1e-4, 4e-4))),
-        np.int32([7, 9]), np.int32([1, 2]), np.uint8([0, 1]))  # fmt: skip
+        np.int32([7, 9]), np.int32([1, 2]), np.uint8([0, 1]), np.uint8([1, 0]))  # fmt: skip
     thin = thin_cloud(two, 1.0)
     # Weights are 4 to 1.
     np.testing.assert_allclose(thin.points, [[0.3, 0.4, 0.2012]], rtol=1e-9)
@@ -65,7 +65,8 @@ def test_a_well_known_point_counts_more():
     np.testing.assert_allclose(
         [thin.signal[0], thin.posterior[0], thin.sigma_common[0]], [16, 0.92, 1.6e-4], rtol=1e-6
     )
-    assert (thin.frame[0], thin.scan_line[0], thin.laser[0]) == (7, 1, 0)
+    best = (thin.frame[0], thin.scan_line[0], thin.laser[0], thin.branch[0])
+    assert best == (7, 1, 0, 1)
 
 
 def test_points_without_sigma_have_plain_means_and_none_after():

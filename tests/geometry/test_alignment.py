@@ -54,8 +54,9 @@ def sample(surface, random, *, aside=0.0, noise=NOISE, count=20_000, has_normals
 
 def as_cloud(points, normals):
     ones, numbers = np.ones(len(points), np.float32), np.arange(len(points), dtype=np.int32)
-    laser = np.zeros(len(points), np.uint8)
-    return PointCloud(points, normals.astype(np.float32), *[ones] * 4, numbers, numbers, laser)
+    laser = branch = np.zeros(len(points), np.uint8)
+    columns = (*[ones] * 4, numbers, numbers, laser, branch)
+    return PointCloud(points, normals.astype(np.float32), *columns)
 
 
 def moved(cloud, pose):

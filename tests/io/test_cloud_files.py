@@ -21,7 +21,7 @@ from murkscan.io.cloud_files import (
 )
 from murkscan.types.cloud import PointCloud
 
-SCALARS = ("signal", "posterior", "sigma", "sigma_common", "frame", "scan_line", "laser")
+SCALARS = ("signal", "posterior", "sigma", "sigma_common", "frame", "scan_line", "laser", "branch")
 
 
 def some_cloud(count=1000, seed=0):
@@ -34,7 +34,7 @@ def some_cloud(count=1000, seed=0):
         *(random.random(count).astype(np.float32) * scale for scale in (250, 1, 3e-4, 2e-4)),
         random.integers(0, 100_000, count).astype(np.int32),
         random.integers(0, 2000, count).astype(np.int32),
-        random.integers(0, 3, count).astype(np.uint8),
+        *random.integers(0, 3, (2, count)).astype(np.uint8),
     )
 
 

@@ -33,6 +33,7 @@ def clouds(draw):
         column(np.int32),
         column(np.int32),
         column(np.uint8),
+        column(np.uint8),
     )
 
 
@@ -42,7 +43,7 @@ def some_cloud(n=50):
     frame = np.repeat(np.arange(n // 10, dtype=np.int32), 10)
     normals = np.tile(np.float32([0, 0, -1]), (n, 1))
     line = np.tile(np.arange(10, dtype=np.int32), n // 10)
-    return PointCloud(points, normals, *[ones] * 4, frame, line, np.zeros(n, np.uint8))
+    return PointCloud(points, normals, *[ones] * 4, frame, line, *np.zeros((2, n), np.uint8))
 
 
 @given(clouds())

@@ -50,7 +50,7 @@ def scan_dent(shape: str, seed: int, *, wave: float = 0.0) -> tuple[Sample, Devi
     cloud = PointCloud(
         np.stack([x, y, 0.8 - values], axis=1), towards.astype(np.float32), ones, ones,
         ones * np.float32(NOISE), 0 * ones, frame.astype(np.int32), line.astype(np.int32),
-        np.zeros(len(x), np.uint8),
+        *np.zeros((2, len(x)), np.uint8),
     )  # fmt: skip
     return Sample.from_cloud(cloud), Deviation(values, towards, np.zeros(len(x))), depth
 

@@ -33,7 +33,7 @@ def _scan(kept=None, *, frames=FRAMES, depth=0.5, axis="y", posterior=1.0):
     return Profile(
         frame.astype(np.uint32), frame * 0.04, np.zeros(n, np.uint8), pixels.copy(),
         np.stack([x, y, z], axis=1), np.full(n, 1e-4, np.float32), np.ones(n, np.float32),
-        np.full(n, posterior, np.float32),
+        np.full(n, posterior, np.float32), np.zeros(n, np.uint8),
     )  # fmt: skip
 
 

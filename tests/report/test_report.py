@@ -56,6 +56,7 @@ def _profile(frames, *, columns=20, branches=1):
         sigma=np.full(n, 1e-4, np.float32),
         signal=(10 * frame + column - 5.0 * branch).astype(np.float32),
         posterior=np.ones(n, np.float32),
+        branch=branch.astype(np.uint8),
     )
 
 
@@ -81,6 +82,7 @@ def _cloud(profile, trajectory):
         frame=profile.frame.astype(np.int32),
         scan_line=profile.pixels[:, 0].astype(np.int32),
         laser=profile.laser,
+        branch=profile.branch,
     )
 
 

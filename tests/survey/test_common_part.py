@@ -25,7 +25,7 @@ def make_profile(count):
     ratio = np.ones(count, np.float32)
     return Profile(
         laser.astype(np.uint32), np.zeros(count), laser, pixels, np.zeros((count, 3)),
-        ratio, ratio, ratio,
+        ratio, ratio, ratio, np.zeros(count, np.uint8),
     )  # fmt: skip
 
 

@@ -53,7 +53,7 @@ def _scan(shift: np.ndarray) -> PointCloud:
     return PointCloud(
         np.stack([x, y, z], axis=1) + shift, normals.astype(np.float32), ones, ones, ones * 1e-4,
         ones * 1e-4, (count // 201).astype(np.int32), (count % 201).astype(np.int32),
-        np.zeros(len(x), np.uint8),
+        *np.zeros((2, len(x)), np.uint8),
     )  # fmt: skip
 
 

@@ -40,6 +40,7 @@ def merge_profiles(profile: Profile, trajectory: Trajectory, *, axis: Axis) -> P
         frame=profile.frame.astype(np.int32),
         scan_line=np.rint(across_stripe).astype(np.int32),
         laser=profile.laser,
+        branch=profile.branch,
     )
     cameras = trajectory.transform(np.zeros_like(profile.points), profile.time)
     return replace(cloud, normals=estimate_normals(ScanGrid.from_cloud(cloud), cameras))

@@ -26,9 +26,12 @@ _SUMS = np.dtype(
         ("frame", "i4"),
         ("scan_line", "i4"),
         ("laser", "u1"),
+        ("branch", "u1"),
     ]
 )
 """What is kept of a voxel: sums times weight, 1/σ², and which point was known best."""
+_NUMBERS = ("frame", "scan_line", "laser", "branch")
+"""What tells which point was known best."""
 _SPREAD = 0x9E3779B97F4A7C15
 """Knuth's multiplicative hash: sorts voxels into shares of equal size."""
 
@@ -131,7 +134,7 @@ def _sum(cloud: PointCloud, grid: VoxelGrid) -> np.ndarray:
     rows["normals"] = cloud.normals * weight[:, None]
     for name in ("signal", "posterior", "sigma_common"):
         rows[name] = getattr(cloud, name) * weight
-    for name in ("frame", "scan_line", "laser"):
+    for name in _NUMBERS:
         rows[name] = getattr(cloud, name)
     rows["best"] = weight
     return _merge([rows])
@@ -153,7 +156,7 @@ def _merge(parts: list[np.ndarray]) -> np.ndarray:
     merged["best"] = np.maximum.reduceat(rows["best"], starts)
     voxel = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(rows))))
     is_best = np.flatnonzero(rows["best"] == merged["best"][voxel])[::-1]
-    for name in ("frame", "scan_line", "laser"):
+    for name in _NUMBERS:
         # Of equals the first one counts: it is written last.
         merged[name][voxel[is_best]] = rows[name][is_best]
     return merged
@@ -179,5 +182,5 @@ def _as_cloud(rows: np.ndarray) -> PointCloud:
             name: (rows[name] / weight).astype(np.float32)
             for name in ("signal", "posterior", "sigma_common")
         },
-        **{name: np.ascontiguousarray(rows[name]) for name in ("frame", "scan_line", "laser")},
+        **{name: np.ascontiguousarray(rows[name]) for name in _NUMBERS},
     )

@@ -1,4 +1,4 @@
-"""Tables of stripes and profiles: Parquet, one part a chunk of frames."""
+"""Tables of stripes, profiles and clouds: Parquet, one part a chunk of frames."""
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
@@ -10,10 +10,17 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from ..errors import FormatError
+from ..types.cloud_part import CloudPart
 from ..types.profile import Profile
 from ..types.stripe import Stripe
 from ..types.true_stripe import TrueStripe
 from .atomic import replacing
+from .cloud_columns import COLUMNS, as_rows, from_columns
+
+_SHOWN_AS = {"scan_line": "line"} | {axis: f"{axis}_m" for axis in "xyz"}
+"""What columns of a cloud are called here, where units stand in the names."""
+_FIRST = ("laser", "frame", "scan_line", "branch")
+_ORDER = [*_FIRST, *(name for name in COLUMNS.names or () if name not in _FIRST)]
 
 
 def save_stripe(path: Path, stripe: Stripe) -> None:
@@ -56,7 +63,8 @@ def save_profile(path: Path, profile: Profile) -> None:
     (u, v), (x, y, z) = profile.pixels.T, profile.points.T
     columns = {"frame": profile.frame, "time_s": profile.time, "laser": profile.laser}
     columns |= {"u": u, "v": v, "x_m": x, "y_m": y, "z_m": z, "sigma_m": profile.sigma}
-    _save(path, columns | {"signal": profile.signal, "posterior": profile.posterior})
+    columns |= {"signal": profile.signal, "posterior": profile.posterior}
+    _save(path, columns | {"branch": profile.branch})
 
 
 def load_profile(path: Path) -> Profile:
@@ -75,7 +83,34 @@ def load_profile(path: Path) -> Profile:
         sigma=columns["sigma_m"],
         signal=columns["signal"],
         posterior=columns["posterior"],
+        branch=columns["branch"],
     )
+
+
+def save_cloud_part(path: Path, part: CloudPart) -> None:
+    """Write a part of a cloud as columns, with the points that were taken out of it and why.
+
+    Raises:
+        DeviceError: The disk is full or cannot be written.
+    """
+    rows = as_rows(part.cloud)
+    columns = {_SHOWN_AS.get(name, name): rows[name] for name in _ORDER}
+    causes = np.array(["", *part.causes])
+    _save(path, columns | {"taken_out": causes[part.taken_out]})
+
+
+def load_cloud_part(path: Path) -> CloudPart:
+    """Read what `save_cloud_part` wrote.
+
+    Raises:
+        FormatError: The file is no such table.
+    """
+    columns = _load(path)
+    words, numbers = np.unique(columns["taken_out"].astype(str), return_inverse=True)
+    causes = tuple(word for word in words.tolist() if word)
+    taken_out = numbers + (0 if "" in words else 1)
+    cloud = from_columns({name: columns[_SHOWN_AS.get(name, name)] for name in _ORDER})
+    return CloudPart(cloud, taken_out.astype(np.uint8), causes)
 
 
 @contextmanager

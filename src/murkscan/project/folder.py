@@ -1,7 +1,7 @@
 """A scan's folder: the one place that knows where each value lies."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
@@ -13,14 +13,22 @@ from ..io.images import write_image
 from ..io.json_files import save_json
 from ..io.mesh_files import load_mesh, save_mesh
 from ..io.mlp import frame_name, save_project, split_frames
-from ..io.parquet import load_profile, load_stripe, save_profile, save_stripe
-from ..io.ply import iterate_cloud, load_cloud, save_cloud, writing_cloud
+from ..io.parquet import (
+    load_cloud_part,
+    load_profile,
+    load_stripe,
+    save_cloud_part,
+    save_profile,
+    save_stripe,
+)
+from ..io.ply import save_cloud, writing_cloud
 from ..io.poses import load_poses, save_poses
 from ..io.text import save_text
 from ..io.values import from_plain, load_value, save_value
 from ..types.arrays import ColourImage
 from ..types.background import Background
 from ..types.cloud import PointCloud
+from ..types.cloud_part import CloudPart
 from ..types.frame_times import FrameTimes
 from ..types.mesh import Mesh
 from ..types.profile import Profile
@@ -225,39 +233,61 @@ class Project:
         self.finished(MOTION)
         return load_poses(self._files(MOTION).checked("trajectory.csv"))
 
-    @contextmanager
-    def writing_cloud(self) -> Iterator[Callable[[PointCloud], None]]:
-        """Write cloud/cloud.ply block by block."""
-        with self._files(CLOUD).making("cloud.ply") as path, writing_cloud(path) as write:
-            yield write
+    def save_cloud_part(self, part: int, points: CloudPart) -> None:
+        """Write one part of the cloud, with what was taken out of it."""
+        with self._files(CLOUD).making(_points_name(part)) as path:
+            save_cloud_part(path, points)
 
-    @contextmanager
-    def writing_frames(self) -> Iterator[Callable[[PointCloud], None]]:
-        """Write one cloud a frame, cloud/frames/*.ply, and cloud/frames.mlp that opens them all.
+    def find_cloud_parts(self) -> list[int]:
+        """Number the parts that cloud has made so far, in order."""
+        return sorted(map(_part_of, self._files(CLOUD).made("points/")))
 
-        The cloud comes in blocks; a frame lies in one of them.
+    def load_cloud_part(self, part: int) -> CloudPart:
+        """Read one part of the cloud, with what was taken out of it."""
+        return load_cloud_part(self._files(CLOUD).checked(_points_name(part)))
+
+    def load_kept_parts(self) -> Iterator[Profile]:
+        """Read the profiles of the points that a finished cloud keeps, part by part, in its order.
+
+        So row i of all of them is the profile's side of the cloud's point i: its pixel, its time.
+        """
+        self.finished(CLOUD)
+        parts = zip(self.find_cloud_parts(), self.load_placed_parts(), strict=True)
+        for part, profile in parts:
+            yield profile[self.load_cloud_part(part).stays]
+
+    def export_cloud(self, *, frames: bool) -> None:
+        """Write cloud/cloud.ply from the parts that have been made.
+
+        Args:
+            frames: Whether to write one cloud a frame, cloud/frames/*.ply, and cloud/frames.mlp
+                that opens them all.
         """
         paths: list[Path] = []
+        with self._files(CLOUD).making("cloud.ply") as path, writing_cloud(path) as write:
+            for part in self.find_cloud_parts():
+                points = self.load_cloud_part(part).kept
+                write(points)
+                if frames:
+                    paths += self._save_frames(points)
+        if frames:
+            with self._files(CLOUD).making("frames.mlp") as path:
+                save_project(path, paths)
 
-        def write(cloud: PointCloud) -> None:
-            for frame, points in split_frames(cloud):
-                with self._files(CLOUD).making(frame_name(frame)) as path:
-                    save_cloud(path, points)
-                    paths.append(path)
-
-        yield write
-        with self._files(CLOUD).making("frames.mlp") as path:
-            save_project(path, paths)
+    def _save_frames(self, points: PointCloud) -> Iterator[Path]:
+        for frame, mine in split_frames(points):
+            with self._files(CLOUD).making(frame_name(frame)) as path:
+                save_cloud(path, mine)
+                yield path
 
     def load_cloud(self) -> PointCloud:
         """Read the cloud of a finished cloud stage."""
-        self.finished(CLOUD)
-        return load_cloud(self._files(CLOUD).checked("cloud.ply"))
+        return PointCloud.concatenate(list(self.iterate_cloud()))
 
     def iterate_cloud(self) -> Iterator[PointCloud]:
-        """Read the cloud of a finished cloud stage, some points at a time."""
+        """Read the cloud of a finished cloud stage, part by part."""
         self.finished(CLOUD)
-        return iterate_cloud(self._files(CLOUD).checked("cloud.ply"))
+        return (self.load_cloud_part(part).kept for part in self.find_cloud_parts())
 
     def save_mesh(self, mesh: Mesh) -> None:
         """Write mesh/mesh.ply, .stl and .glb."""
@@ -316,6 +346,10 @@ def _note_name(part: int) -> str:
 
 def _profile_name(part: int) -> str:
     return f"profiles/{part:06d}.parquet"
+
+
+def _points_name(part: int) -> str:
+    return f"points/{part:06d}.parquet"
 
 
 def _part_of(name: str) -> int:

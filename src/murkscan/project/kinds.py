@@ -30,9 +30,9 @@ class Kind(Generic[R]):
 
 
 EXTRACT = Kind("extract", ExtractResult, meaning=1)
-TRIANGULATE = Kind("triangulate", TriangulateResult, meaning=1)
+TRIANGULATE = Kind("triangulate", TriangulateResult, meaning=2)
 MOTION = Kind("motion", MotionResult, meaning=1)
-CLOUD = Kind("cloud", CloudResult, meaning=1)
+CLOUD = Kind("cloud", CloudResult, meaning=2)
 MESH = Kind("mesh", MeshResult, meaning=1)
 VIEW = Kind("view", ViewResult, meaning=1)
 REPORT = Kind("report", ReportResult, meaning=1)

@@ -1,5 +1,7 @@
 """How far apart neighbouring points lie: along a profile, and across to the next."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..geometry.grid import line_step
@@ -37,16 +39,7 @@ def spacing_across(profile: Profile, trajectory: Trajectory, axis: Axis) -> Scal
         trajectory: world_from_camera.
         axis: The camera axis along which the laser sits.
     """
-    in_world = Profile(
-        profile.frame,
-        profile.time,
-        profile.laser,
-        profile.pixels,
-        trajectory.transform(profile.points, profile.time),
-        profile.sigma,
-        profile.signal,
-        profile.posterior,
-    )
+    in_world = replace(profile, points=trajectory.transform(profile.points, profile.time))
     points, frame, line = _one_per_line(in_world, axis)
     order = np.lexsort((frame, line))
     gap = np.diff(frame[order])

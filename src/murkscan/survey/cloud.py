@@ -2,14 +2,14 @@
 
 from collections import Counter
 from collections.abc import Sequence
-from contextlib import ExitStack
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..cloud import OUTLIER_RULES, AbstractOutlierRule, SeenCloud, find_outliers, merge_profiles
 from ..project import CLOUD, EXTRACT, MOTION, TRIANGULATE, CloudResult, Project, describe
-from ..types.cloud import PointCloud
+from ..types.cloud import empty_cloud
+from ..types.cloud_part import CloudPart
 from ..types.laser import Axis
 from ..types.rig import Rig
 from ..types.trajectory import Trajectory
@@ -56,38 +56,56 @@ def build_cloud(
     )
 
     def make(trajectory: Trajectory) -> CloudResult:
-        axis = rig.lasers[extracted.laser].axis
-        blocks = cut_blocks(project.load_placed_parts(), block=block)
-        found: Counter[str] = Counter({rule.cause: 0 for rule in rules})
-        points = 0
-        with ExitStack() as stack:
-            write = [stack.enter_context(project.writing_cloud())]
-            if frames or extracted.frames <= FRAME_FILES:
-                write.append(stack.enter_context(project.writing_frames()))
-            for done, one in enumerate(blocks):
-                progress("cloud", done, None)
-                cloud, causes = _merge(one, trajectory, rig, axis, rules)
-                for save in write:
-                    save(cloud)
-                points += len(cloud)
-                found.update(causes)
-        return CloudResult(points, found.total(), dict(found))
+        judge = _Judge(trajectory, rig, rig.lasers[extracted.laser].axis, rules)
+        _make_parts(project, judge, block, progress)
+        project.export_cloud(frames=frames or extracted.frames <= FRAME_FILES)
+        return _count(project, rules)
 
     return run_stage(project, stage, make, prepare=project.load_trajectory, progress=progress)
 
 
-def _merge(
-    block: ProfileBlock,
-    trajectory: Trajectory,
-    rig: Rig,
-    axis: Axis,
-    rules: Sequence[AbstractOutlierRule],
-) -> tuple[PointCloud, dict[str, int]]:
-    """Give a block's points, and count what was taken out of it."""
-    profile, is_body = block.profile, block.is_body
-    cloud = merge_profiles(profile, trajectory, axis=axis)
-    cameras = trajectory.transform(np.zeros_like(profile.points), profile.time)
-    found = find_outliers(SeenCloud(cloud, cameras), rules)
-    kept = is_body & ~np.any([*found.values(), np.zeros(len(cloud), bool)], axis=0)
-    kept_cloud = replace(cloud[kept], sigma_common=spread_common(profile[kept], rig))
-    return kept_cloud, {cause: int((which & is_body).sum()) for cause, which in found.items()}
+@dataclass(frozen=True)
+class _Judge:
+    """What every block needs."""
+
+    trajectory: Trajectory
+    rig: Rig
+    axis: Axis
+    rules: Sequence[AbstractOutlierRule]
+
+    def place(self, block: ProfileBlock) -> CloudPart:
+        """Carry a block's points to the world, and tell which of them are no surface."""
+        profile, is_body = block.profile, block.is_body
+        if not len(profile):
+            return CloudPart.whole(empty_cloud())
+        cloud = merge_profiles(profile, self.trajectory, axis=self.axis)
+        cameras = self.trajectory.transform(np.zeros_like(profile.points), profile.time)
+        found = find_outliers(SeenCloud(cloud, cameras), self.rules)
+        taken_out = np.zeros(len(cloud), np.uint8)
+        for number, which in enumerate(found.values(), 1):
+            taken_out[which] = number
+        common = spread_common(profile[is_body], self.rig)
+        body = replace(cloud[is_body], sigma_common=common)
+        return CloudPart(body, taken_out[is_body], tuple(found))
+
+
+def _make_parts(project: Project, judge: _Judge, block: int, progress: Progress) -> None:
+    """Make the parts that are missing, a block at a time."""
+    there, waiting = {*project.find_cloud_parts()}, sorted(project.find_profile_parts())
+    for done, one in enumerate(cut_blocks(project.load_placed_parts(), block=block)):
+        progress("cloud", done, None)
+        numbers, waiting = waiting[: len(one.sizes)], waiting[len(one.sizes) :]
+        if there.issuperset(numbers):
+            continue
+        placed, ends = judge.place(one), np.cumsum(one.sizes)
+        for number, size, end in zip(numbers, one.sizes, ends.tolist(), strict=True):
+            project.save_cloud_part(number, placed[end - size : end])
+
+
+def _count(project: Project, rules: Sequence[AbstractOutlierRule]) -> CloudResult:
+    points, found = 0, Counter({rule.cause: 0 for rule in rules})
+    for number in project.find_cloud_parts():
+        part = project.load_cloud_part(number)
+        points += int(part.stays.sum())
+        found.update({rule.cause: part.count(rule.cause) for rule in rules})
+    return CloudResult(points, found.total(), dict(found))

@@ -16,6 +16,7 @@ from ..geometry.alignment import Alignment, align_clouds
 from ..io.cloud_files import check_cloud_suffix, iterate_cloud_file
 from ..project import CLOUD, MOTION, CloudResult, MotionResult, PassResult, Project, ScanRecord
 from ..types.cloud import PointCloud
+from ..types.cloud_part import CloudPart
 from ..types.pose import Pose
 from ..types.trajectory import Trajectory
 from .alignment_words import alignment_result, describe_alignment
@@ -138,11 +139,11 @@ def merge_passes(
         project.save_scan(_record(paths, project.command))
         stage.begin()
         points = 0
-        with project.writing_cloud() as write:
-            for block in blocks:
-                write(block)
-                points += len(block)
-                progress("merge", points, None)
+        for number, block in enumerate(blocks):
+            project.save_cloud_part(number, CloudPart.whole(block))
+            points += len(block)
+            progress("merge", points, None)
+        project.export_cloud(frames=False)
         result = CloudResult(points, outliers=0, passes=tuple(told))
         stage.finish(result, since=since)
         _follow(project, moved, since)

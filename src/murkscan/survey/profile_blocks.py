@@ -22,6 +22,8 @@ class ProfileBlock:
     """All points, in order of frames."""
     is_body: Mask
     """Which of them belong to the block."""
+    sizes: tuple[int, ...]
+    """How many points each part has that the block is made of."""
 
 
 def cut_blocks(parts: Iterable[Profile], *, block: int = BLOCK) -> Iterator[ProfileBlock]:
@@ -34,29 +36,31 @@ def cut_blocks(parts: Iterable[Profile], *, block: int = BLOCK) -> Iterator[Prof
         parts: Profiles in order of frames; no frame lies in two of them.
         block: Points of a block, about.
     """
-    before, body = Profile.concatenate([]), Profile.concatenate([])
-    for following in _join(parts, block):
-        if len(body):
-            yield _with_halo(before, body, following)
-        before, body = body, following
-    if len(body):
-        yield _with_halo(before, body, Profile.concatenate([]))
+    before, body, sizes = Profile.concatenate([]), Profile.concatenate([]), tuple[int, ...]()
+    for following, its_sizes in _join(parts, block):
+        if sizes:
+            yield _with_halo(before, body, following, sizes)
+        before, body, sizes = body, following, its_sizes
+    if sizes:
+        yield _with_halo(before, body, Profile.concatenate([]), sizes)
 
 
-def _join(parts: Iterable[Profile], block: int) -> Iterator[Profile]:
+def _join(parts: Iterable[Profile], block: int) -> Iterator[tuple[Profile, tuple[int, ...]]]:
     waiting: list[Profile] = []
     for part in parts:
         waiting.append(part)
         if sum(map(len, waiting)) >= block:
-            yield Profile.concatenate(waiting)
+            yield Profile.concatenate(waiting), tuple(map(len, waiting))
             waiting = []
-    yield Profile.concatenate(waiting)
+    yield Profile.concatenate(waiting), tuple(map(len, waiting))
 
 
-def _with_halo(before: Profile, body: Profile, after: Profile) -> ProfileBlock:
+def _with_halo(
+    before: Profile, body: Profile, after: Profile, sizes: tuple[int, ...]
+) -> ProfileBlock:
     if len(before) > _HALO:
         before = before[before.frame > before.frame[-_HALO]]
     if len(after) > _HALO:
         after = after[after.frame < after.frame[_HALO]]
     is_body = np.repeat([False, True, False], [len(before), len(body), len(after)])
-    return ProfileBlock(Profile.concatenate([before, body, after]), is_body)
+    return ProfileBlock(Profile.concatenate([before, body, after]), is_body, sizes)

@@ -17,7 +17,6 @@ from ..project import (
     digest,
 )
 from ..report import ScanSummary, Shown, as_html, as_json, summarise, with_coverage
-from .kept import kept_profiles
 from .progress import Progress, silent
 from .recorded import tell_recording
 from .scan_rig import load_recording_record, load_scan_rig
@@ -85,8 +84,8 @@ def _summarise(project: Project, spacing: float | None) -> ScanSummary:
         durations={word: stage.record.seconds for word, stage in stages.items()},
         pictures=_pictures(project),
     )
-    profiles = kept_profiles(project, summary.rig.lasers[summary.laser].axis)
-    return with_coverage(summary, profiles, frames=frames, trajectory=trajectory)
+    kept = project.load_kept_parts()
+    return with_coverage(summary, kept, frames=frames, trajectory=trajectory)
 
 
 def _pictures(project: Project) -> list[Shown]:

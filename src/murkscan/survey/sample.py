@@ -1,10 +1,7 @@
 """The points of a scan as measures want them: seen from where, and moved by what."""
 
-from collections.abc import Callable
-
 import numpy as np
 from jaxtyping import Float
-from scipy.spatial import KDTree
 from scipy.spatial.transform import Rotation
 
 from ..errors import NotEnoughData
@@ -13,7 +10,7 @@ from ..measure import Sample, Selection
 from ..optics import light_across, refractive_index
 from ..optics.uncertainty import common_shifts
 from ..project import Project
-from ..types.arrays import Indices, Scalars, Vector
+from ..types.arrays import Indices, Vector
 from ..types.cloud import PointCloud
 from ..types.profile import Profile
 from ..types.rig import Rig
@@ -24,8 +21,6 @@ from .scan_rig import load_scan_rig, moving_rig
 
 _FEWEST = 10
 """Points of a selection below which a measure says nothing."""
-_MOST_TRACED = 300_000
-"""Points of a scan among which the nearest is looked up: the rig's error varies slowly."""
 
 
 def load_sample(project: Project, selection: Selection | None = None) -> Sample:
@@ -56,60 +51,32 @@ def _know_all(project: Project, cloud: PointCloud) -> Sample:
         return Sample.from_cloud(cloud, shifts=trace_alignment(project, cloud))
     if len(cloud) == 0:
         return Sample.from_cloud(cloud)
-    rig = moving_rig(project, load_scan_rig(project))
+    rig, trajectory = moving_rig(project, load_scan_rig(project)), project.load_trajectory()
+    profile = Profile.concatenate(list(project.load_kept_parts()))
+
+    def shifts(some: Indices) -> Float[np.ndarray, "n 3 modes"]:
+        return _shift(profile[some], trajectory, rig)
+
     return Sample.from_cloud(
         cloud,
-        sight=_look_back(project, cloud, rig),
-        shifts=_trace_shifts(project, cloud, rig) if rig.covariance.names else None,
+        sight=_look_back(cloud, profile, trajectory, rig),
+        shifts=shifts if rig.covariance.names else None,
     )
 
 
-def _look_back(project: Project, cloud: PointCloud, rig: Rig) -> Sight | None:
-    """Find from where each point was seen; None where frames are not of this recording."""
-    times = _times_of(project, cloud)
-    if times is None:
-        return None
-    trajectory = project.load_trajectory()
-    cameras = trajectory.transform(np.zeros_like(cloud.points), times)
+def _look_back(cloud: PointCloud, profile: Profile, trajectory: Trajectory, rig: Rig) -> Sight:
+    """Find from where each point was seen."""
+    cameras = trajectory.transform(np.zeros_like(cloud.points), profile.time)
     rays = cloud.points - cameras
     rays /= np.maximum(np.linalg.norm(rays, axis=1, keepdims=True), 1e-12)
     axes = {laser: rig.lasers[laser].axis for laser in np.unique(cloud.laser).tolist()}
     across = np.array([axes[laser] == "x" for laser in cloud.laser.tolist()])
     stripe = np.where(across[:, None], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0])
-    along = trajectory.transform(stripe, times) - cameras
+    along = trajectory.transform(stripe, profile.time) - cameras
     index = refractive_index(rig.water, rig.wavelength)
     lights = {laser: light_across(rig.lasers[laser], index) for laser in axes}
     light = np.array([lights[laser] for laser in cloud.laser.tolist()])
-    return Sight(rays, along, trajectory.transform(light, times) - cameras)
-
-
-def _times_of(project: Project, cloud: PointCloud) -> Scalars | None:
-    known = project.load_frame_times()
-    order = np.argsort(known.frame)
-    frames = known.frame[order].astype(np.int64)
-    slot = np.minimum(np.searchsorted(frames, cloud.frame), max(len(frames) - 1, 0))
-    if len(frames) == 0 or np.any(frames[slot] != cloud.frame):
-        return None
-    return known.time[order][slot]
-
-
-def _trace_shifts(
-    project: Project, cloud: PointCloud, rig: Rig
-) -> Callable[[Indices], Float[np.ndarray, "n 3 modes"]]:
-    """Give how points of the cloud move with the rig's errors, in the world.
-
-    A cloud keeps no pixels: those of the nearest point of the profiles stand for them.
-    """
-    profile = Profile.concatenate(list(project.load_placed_parts()))
-    trajectory = project.load_trajectory()
-    profile = profile[:: max(len(profile) // _MOST_TRACED, 1)]
-    tree = KDTree(trajectory.transform(profile.points, profile.time))
-
-    def shifts(some: Indices) -> Float[np.ndarray, "n 3 modes"]:
-        near = np.asarray(tree.query(cloud.points[some])[1])
-        return _shift(profile[near], trajectory, rig)
-
-    return shifts
+    return Sight(rays, along, trajectory.transform(light, profile.time) - cameras)
 
 
 def _shift(profile: Profile, trajectory: Trajectory, rig: Rig) -> Float[np.ndarray, "n 3 modes"]:

@@ -60,6 +60,7 @@ def triangulate(stripe: Stripe, rig: Rig, method: AbstractTriangulation) -> Prof
         sigma=(slope[seen] * stripe.sigma[seen]).astype(np.float32),
         signal=stripe.signal[seen],
         posterior=stripe.posterior[seen],
+        branch=stripe.branch[seen],
     )
 
 

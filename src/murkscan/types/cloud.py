@@ -43,6 +43,9 @@ class PointCloud:
     """Image column (stripe along rows) or row (stripe along columns) that saw the point [px]."""
     laser: SmallNumbers
     """Number of the laser in the rig."""
+    branch: SmallNumbers
+    """Number of the point among those of its scan line, from 0; with laser, frame and scan line it
+    says which centre of which stripe the point is."""
 
     def __len__(self) -> int:
         """Count the points."""
@@ -83,4 +86,5 @@ def empty_cloud() -> PointCloud:
         frame=number,
         scan_line=number,
         laser=np.zeros(0, np.uint8),
+        branch=np.zeros(0, np.uint8),
     )

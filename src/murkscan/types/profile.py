@@ -28,6 +28,8 @@ class Profile:
     """Height of the stripe above its surroundings [grey levels]."""
     posterior: Ratios
     """Probability that this is the surface."""
+    branch: SmallNumbers
+    """Number of each point among those of its scan line, from 0, the strongest first."""
 
     def __len__(self) -> int:
         """Count the points."""
@@ -58,4 +60,5 @@ def empty_profile() -> Profile:
         sigma=ratio,
         signal=ratio,
         posterior=ratio,
+        branch=np.zeros(0, np.uint8),
     )
