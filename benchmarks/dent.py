@@ -10,7 +10,6 @@ import trimesh
 from harness import Figure, tell
 from kept import Kept, make_in_pieces
 
-from murkscan.cli.choices import make_extractor
 from murkscan.cli.scan import scan as scan_command
 from murkscan.cloud import merge_profiles, remove_outliers
 from murkscan.geometry.stripe_blur import Sight
@@ -29,6 +28,7 @@ from murkscan.triangulate.base import triangulate
 from murkscan.types.mesh import Mesh
 from murkscan.types.stripe import Stripe
 from murkscan.types.trajectory import Trajectory
+from murkscan.ui.choices import make_extractor
 
 SEEDS = 20
 DEPTH, WIDTH = 2e-3, 60e-3

@@ -9,7 +9,6 @@ import tomlkit
 from harness import Figure, tell
 from kept import Kept, make_in_pieces
 
-from murkscan.cli.choices import make_extractor
 from murkscan.cli.scan import scan as scan_command
 from murkscan.cloud import merge_profiles, remove_outliers
 from murkscan.geometry.cylinder_fit import fit_cylinder
@@ -31,6 +30,7 @@ from murkscan.triangulate.base import triangulate
 from murkscan.types.frame import Frame
 from murkscan.types.quantity import Quantity
 from murkscan.types.stripe import Stripe
+from murkscan.ui.choices import make_extractor
 
 SEEDS = 40
 PICTURES, TRAVEL_MM, RATE_HZ, START_MM = 14, 56.0, 25.0, 187.0

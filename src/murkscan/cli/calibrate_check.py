@@ -4,11 +4,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import InputError
+from ..ui.choices import ExtractorName, make_extractor
+from ..ui.values import read_numbers
 from .calibrate import parse_board
 from .calibrate_laser import parse_margin
 from .calibrate_result import say_unused
-from .choices import ExtractorName, make_extractor
-from .options import read_numbers
 from .progress import progress_bars
 from .words import print_table, say, say_verdict
 

@@ -4,10 +4,10 @@ import math
 from typing import TYPE_CHECKING, Literal
 
 from ..errors import InputError
+from ..ui.choices import ExtractorName, make_extractor
+from ..ui.values import read_numbers
 from .calibrate import parse_board
 from .calibrate_result import print_result
-from .choices import ExtractorName, make_extractor
-from .options import read_numbers
 from .paths import PhotoPath, RigFile
 from .progress import progress_bars
 

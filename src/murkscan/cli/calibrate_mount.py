@@ -3,9 +3,9 @@
 from typing import TYPE_CHECKING
 
 from ..errors import InputError
+from ..ui.values import read_numbers, read_start_time
 from .calibrate import parse_board
 from .calibrate_result import print_result
-from .options import read_numbers, read_start_time
 from .paths import LogPath, PhotoPath, RigFile
 from .progress import progress_bars
 

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from .choices import ExtractorName, check_settings, make_extractor
+from ..ui.choices import ExtractorName, check_settings, make_extractor
 from .options import RecordingFlags, Settings
 from .paths import RecordingPath, RigFile
 from .progress import progress_bars

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from ..errors import InputError
-from .options import read_numbers
+from ..ui.values import read_numbers
 from .paths import ScanFolder
 from .words import print_table, say
 

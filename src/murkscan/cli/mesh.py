@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from ..errors import InputError
-from .choices import MesherName, check_settings, make_mesher
+from ..ui.choices import MesherName, check_settings, make_mesher
 from .options import Settings
 from .paths import ScanFolder
 from .progress import progress_bars

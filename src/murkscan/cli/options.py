@@ -1,6 +1,5 @@
 """Flags that several commands share."""
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -8,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Parameter
 
 from ..errors import InputError
+from ..ui.values import read_start_time
 from .paths import MaybeLogPath
 
 if TYPE_CHECKING:
@@ -146,28 +146,3 @@ class MotionFlags:
                     raise InputError(f"{flag} goes with --poses; leave it out.")
         if self.poses is not None and self.along is not None:
             raise InputError("--along goes with --speed-mm-s or --step-mm; leave it out.")
-
-
-def read_numbers(text: str, count: int) -> list[float] | None:
-    """Read finite numbers that commas part; None where they are no numbers, or not so many."""
-    try:
-        numbers = [float(number) for number in text.split(",")]
-    except ValueError:
-        return None
-    return numbers if len(numbers) == count and all(map(math.isfinite, numbers)) else None
-
-
-def read_start_time(text: str) -> float:
-    """Read --start-time [s]: seconds, or ISO 8601, in UTC unless it says otherwise."""
-    from ..io.clock_times import read_moment
-
-    try:
-        return float(text)
-    except ValueError:
-        pass
-    try:
-        return read_moment(text)
-    except (ValueError, OverflowError) as error:
-        raise InputError(
-            f"--start-time {text!r} is neither seconds nor a time such as 2026-05-01T09:30:00Z."
-        ) from error

@@ -5,7 +5,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from .choices import (
+from ..ui.choices import (
     ExtractorName,
     MesherName,
     MethodName,

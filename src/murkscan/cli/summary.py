@@ -1,9 +1,10 @@
 """What a command says when it is done."""
 
-import dataclasses
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from ..ui.results import list_counts
 
 if TYPE_CHECKING:
     from ..project import Project
@@ -11,28 +12,12 @@ if TYPE_CHECKING:
     from ..types.background import Attenuation
 
 _SKIPS_SHOWN = 5
-_UNTOLD = ("laser", "start")
-"""Numbers of a result that other stages want, and nobody else."""
 
 
 def print_result(stage: str, result: Any, where: Path) -> None:
     """Say what one stage has made, and where it lies; of some results only where."""
-    counts = "" if result is None else ", ".join(_counts(result))
+    counts = "" if result is None else ", ".join(list_counts(result))
     print(f"{stage}: {counts + '; ' if counts else ''}{where}")
-
-
-def _counts(result: Any) -> Iterator[str]:
-    """Give the numbers of a stage's result, with the words for them."""
-    for field in dataclasses.fields(result):
-        value, words = getattr(result, field.name), field.name.replace("_", " ")
-        if isinstance(value, dict):
-            yield from (f"{words} {cause} {count:,}" for cause, count in value.items())
-        if isinstance(value, bool) or field.name in _UNTOLD:
-            continue
-        if isinstance(value, float):
-            yield f"{words} {value:g} {field.metadata['unit']}"
-        elif isinstance(value, int):
-            yield f"{words} {value:,}"
 
 
 def print_remarks(remarks: Sequence[str], water: "Attenuation | None" = None) -> None:

@@ -1,6 +1,6 @@
 """murkscan triangulate: turn stripes into profiles."""
 
-from .choices import MethodName, make_method
+from ..ui.choices import MethodName, make_method
 from .paths import ScanFolder
 from .progress import progress_bars
 from .typed import WORDS

@@ -1,4 +1,4 @@
-"""The names of the Choices on the command line, and what a user may set of them."""
+"""The names of the Choices, and what a user may set of them: one table for each Choice."""
 
 import dataclasses
 import importlib

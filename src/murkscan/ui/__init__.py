@@ -1,0 +1,1 @@
+"""What the command line and web pages share: names of choices, values of flags, results."""

@@ -1,0 +1,30 @@
+"""What users write as the value of a flag or a field, read."""
+
+import math
+
+from ..errors import InputError
+
+
+def read_numbers(text: str, count: int) -> list[float] | None:
+    """Read finite numbers that commas part; None where they are no numbers, or not so many."""
+    try:
+        numbers = [float(number) for number in text.split(",")]
+    except ValueError:
+        return None
+    return numbers if len(numbers) == count and all(map(math.isfinite, numbers)) else None
+
+
+def read_start_time(text: str) -> float:
+    """Read --start-time [s]: seconds, or ISO 8601, in UTC unless it says otherwise."""
+    from ..io.clock_times import read_moment
+
+    try:
+        return float(text)
+    except ValueError:
+        pass
+    try:
+        return read_moment(text)
+    except (ValueError, OverflowError) as error:
+        raise InputError(
+            f"--start-time {text!r} is neither seconds nor a time such as 2026-05-01T09:30:00Z."
+        ) from error
