@@ -48,6 +48,7 @@ def test_the_columns_are_those_of_the_contract(tmp_path):
     profile = pq.read_schema(tmp_path / "p.parquet")
     assert profile.names == [
         "frame", "time_s", "laser", "u", "v", "x_m", "y_m", "z_m", "sigma_m", "signal", "posterior",
+        "branch",
     ]  # fmt: skip
 
 

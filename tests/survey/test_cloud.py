@@ -76,8 +76,10 @@ def scanned(root, profile, trajectory, *, parts):
 
     triangulated = TriangulateResult(len(profile), dropped=0)
     finish(project, TRIANGULATE, triangulated, inputs=inputs, make=save_parts)
-    moved = MotionResult(len(trajectory.times))
-    finish(project, MOTION, moved, inputs=inputs, make=lambda: project.save_trajectory(trajectory))
+    # As a motion gives them: a pose for each frame.
+    poses = trajectory.at(np.unique(profile.time)) if len(profile) else trajectory
+    moved = MotionResult(len(poses.times))
+    finish(project, MOTION, moved, inputs=inputs, make=lambda: project.save_trajectory(poses))
     return project
 
 
@@ -350,6 +352,7 @@ def test_an_export_does_not_hold_the_cloud_in_memory(tmp_path):
     code = (
         "import resource, sys; from pathlib import Path\n"
         "sys.path.insert(0, sys.argv[2])\n"
+        "from murkscan.types.cloud_part import CloudPart\n"
         "from tests.survey.test_cloud import *\n"
         "root, cloud = Path(sys.argv[1]), scan_cloud(plane)\n"
         "project = as_project(root / 'scan', cloud)\n"
