@@ -4,7 +4,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 
+settings.register_profile("murkscan", deadline=None)  # a slow machine is no fault of the code
+settings.load_profile("murkscan")
 SHARED = Path(__file__).resolve().parents[2] / "shared"
 DATA, FAULTS = SHARED / "data", SHARED / "faults"
 
