@@ -3,8 +3,8 @@
 import heapq
 import math
 from collections import deque
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from statistics import median
 from typing import Any, Literal
 
@@ -47,12 +47,19 @@ class Loss:
         return self.first + self.count
 
 
-def decode_pictures(container: Any) -> Iterator[Picture | Loss]:
+def decode_pictures(
+    container: Any, *, count_before: Callable[[int], int] = lambda _: 0
+) -> Iterator[Picture | Loss]:
     """Decode a container from its present place; numbers count from 0 there.
 
     A picture that the decoder gives up, or marks as patched up from others, is a loss. Lost
     pictures keep their numbers: those of the packets that were fed and never came out, or, where
     damage swallowed packets too, as many as fit into the gap in time.
+
+    Args:
+        container: What `open_video` gives.
+        count_before: Gives how many pictures come before one by its time [ticks], where the present
+            place is not the beginning.
     """
     tick = picture_ticks(container)
     fed, rhythm = _Fed(tick), _Rhythm(tick)
@@ -73,6 +80,8 @@ def decode_pictures(container: Any) -> Iterator[Picture | Loss]:
         yield Picture(number + lost, decoded)
         number, lost, damaged = number + lost + 1, 0, False
     promised = container.streams.video[0].frames // max(tick, 1) - fed.num_pictures
+    if fed.first is not None:
+        promised -= count_before(fed.first) - fed.num_leading
     lost += len(fed.times) if damaged or promised > 0 else 0
     if lost:
         yield Loss(number, lost)
@@ -86,7 +95,10 @@ class _Fed:
     def __init__(self, tick: int) -> None:
         self._tick = tick
         self._count = 0
-        self._first: int | None = None
+        self.first: int | None = None
+        """Time of the first of them."""
+        self.num_leading = 0
+        """How many are shown before the first one: they lean on what comes before it."""
         self._last = 0
         self.times: list[int] = []
         """A heap: the times of those whose pictures have not come out."""
@@ -94,15 +106,16 @@ class _Fed:
     @property
     def num_pictures(self) -> int:
         """How many pictures they stand for; in AVI those without a packet count as well."""
-        if self._tick and self._first is not None:
-            return (self._last - self._first) // self._tick + 1
+        if self._tick and self.first is not None:
+            return (self._last - self.first) // self._tick + 1
         return self._count
 
     def add(self, packet: Any) -> None:
         """Note a packet; the empty one at the end is none."""
         self._count += packet.dts is not None or packet.size > 0
         if packet.pts is not None:
-            self._first = packet.pts if self._first is None else self._first
+            self.first = packet.pts if self.first is None else self.first
+            self.num_leading += packet.pts < self.first
             self._last = max(self._last, packet.pts)
             heapq.heappush(self.times, packet.pts)
 
@@ -192,6 +205,13 @@ def _feed(container: Any, fed: _Fed) -> Iterator[Any]:
             yield from packet.decode()
         except av.error.FFmpegError:
             yield None
+
+
+def renumber(item: Picture | Loss, base: int) -> Picture | Loss:
+    """Count an item from another beginning."""
+    if isinstance(item, Loss):
+        return replace(item, first=item.first + base)
+    return replace(item, number=item.number + base)
 
 
 def picture_time(decoded: Any) -> float:

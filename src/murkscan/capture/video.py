@@ -3,20 +3,26 @@
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import islice
 from pathlib import Path
 from typing import final
+
+import numpy as np
 
 from ..errors import FormatError
 from ..types.frame import Frame
 from .base import AbstractRecording, Skip, fingerprint_files, ignore_skip, spread_evenly
 from .clock import Clock
 from .container import open_video
-from .decode import Loss, decode_pictures, grey_from_video, picture_time
+from .decode import Loss, grey_from_video, picture_time
 from .fields import FieldOrder, split_fields
+from .index import VideoIndex, decode_from, index_video
 from .seek import pictures_at
 from .timed import TimedPicture, time_pictures
 
+_SAME = 0.1
+"""Share by which the steps of packets and of pictures may differ, by rounding."""
 _WHY = {
     "broken": "cannot be decoded",
     "empty": "came without data: the recorder dropped frames there",
@@ -43,6 +49,16 @@ class Video(AbstractRecording):
     wavelength: float
     """Wavelength of the laser, for which colours are weighted [m]."""
 
+    @cached_property
+    def index(self) -> VideoIndex | None:
+        """The times of all pictures; None where only decoding from the beginning is exact."""
+        index = index_video(self.path)
+        if index is None or not self.clock.spacing:
+            return None
+        # Where each field has a packet of its own, packets are no pictures.
+        usual = float(np.median(np.diff(index.times)))
+        return index if abs(usual - self.clock.spacing) < _SAME * usual else None
+
     @property
     def span(self) -> tuple[float, float]:
         """Give the times of the first and of the last picture [s], as the file claims."""
@@ -55,11 +71,14 @@ class Video(AbstractRecording):
     ) -> Iterator[Frame]:
         """Read the frames in order, from the one with index `start`; see the base.
 
-        The video is decoded from its beginning, since only so the count is exact.
+        The video is decoded from a keyframe before that one where its index is exact, otherwise
+        from its beginning.
         """
         each = self.fields_per_picture
+        index = self.index if start >= each else None
         with closing(open_video(self.path)) as container:
-            for item in time_pictures(decode_pictures(container), self.clock):
+            items = decode_from(container, index, start // each)
+            for item in time_pictures(items, self.clock):
                 if isinstance(item, Loss):
                     self._tell(item, start, on_skip)
                 elif (item.number + 1) * each > start:

@@ -1,0 +1,33 @@
+"""Results in order while only a few tasks are under way."""
+
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Future
+from typing import TypeVar
+
+T = TypeVar("T")
+R = TypeVar("R")
+
+
+def map_in_window(submit: Callable[[T], Future[R]], items: Iterable[T], width: int) -> Iterator[R]:
+    """Submit items as results are taken.
+
+    Args:
+        submit: Begins the work on an item.
+        items: What is worked on; one more is taken whenever a result is given.
+        width: Items under way at once.
+
+    Yields:
+        The results in the order of the items.
+    """
+    waiting: deque[Future[R]] = deque()
+    try:
+        for item in items:
+            waiting.append(submit(item))
+            if len(waiting) >= width:
+                yield waiting.popleft().result()
+        while waiting:
+            yield waiting.popleft().result()
+    finally:
+        for future in waiting:
+            future.cancel()
