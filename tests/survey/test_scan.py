@@ -14,9 +14,10 @@ from murkscan.capture import Skip
 from murkscan.geometry.mesh_distance import distance_to_mesh
 from murkscan.io.mesh_files import load_mesh
 from murkscan.project import EXTRACT, TRIANGULATE
+from murkscan.survey.chunks import cut_chunks
 from murkscan.survey.cloud import build_cloud
 from murkscan.survey.demo import Errors, run_demo
-from murkscan.survey.extract import cut_chunks, extract_recording
+from murkscan.survey.extract import extract_recording
 
 from ..scenes import HULL_SPEED
 

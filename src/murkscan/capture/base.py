@@ -51,6 +51,11 @@ class AbstractRecording(abc.ABC):
         """Give the times of the first and the last picture [s]; the same where unknown."""
 
     @property
+    @abc.abstractmethod
+    def starts_anywhere(self) -> bool:
+        """Tell whether reading can start at any frame without reading those before it."""
+
+    @property
     def fields_per_picture(self) -> int:
         """2 where the recording is interlaced and each field is a frame, otherwise 1."""
         return 1 if self.order == "progressive" else 2

@@ -86,6 +86,11 @@ class ImageFolder(AbstractRecording):
     """Wavelength of the laser, for which colours are weighted [m]."""
 
     @property
+    def starts_anywhere(self) -> bool:
+        """Tell whether reading can start at any frame; see the base."""
+        return True
+
+    @property
     def span(self) -> tuple[float, float]:
         """Give the times of the first and of the last picture [s]."""
         return self.times[0], self.times[-1]

@@ -49,6 +49,11 @@ class Video(AbstractRecording):
     wavelength: float
     """Wavelength of the laser, for which colours are weighted [m]."""
 
+    @property
+    def starts_anywhere(self) -> bool:
+        """Tell whether reading can start at any frame; see the base."""
+        return self.index is not None
+
     @cached_property
     def index(self) -> VideoIndex | None:
         """The times of all pictures; None where only decoding from the beginning is exact."""

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from ..ui.choices import ExtractorName, check_settings, make_extractor
-from .options import RecordingFlags, Settings
+from .options import ExecutorFlags, RecordingFlags, Settings
 from .paths import RecordingPath, RigFile
 from .progress import progress_bars
 from .typed import WORDS
@@ -15,6 +15,7 @@ def extract(
     rig: RigFile,
     out: Path,
     reading: RecordingFlags = RecordingFlags(),
+    work: ExecutorFlags = ExecutorFlags(),
     extractor: ExtractorName = "murk",
     settings: Settings = (),
     laser: int = 0,
@@ -37,6 +38,7 @@ def extract(
         Number of the laser in the rig whose stripe is followed, from 0.
     """
     check_settings(settings)
+    executor = work.make()
     from ..io.rig_toml import load_rig
     from ..project import Project
     from ..survey.extract import extract_recording
@@ -57,7 +59,13 @@ def extract(
     )
     with progress_bars() as progress:
         result = extract_recording(
-            project, pictures, of_recording, finder, laser=laser, progress=progress
+            project,
+            pictures,
+            of_recording,
+            finder,
+            laser=laser,
+            executor=executor,
+            progress=progress,
         )
     print_result("extract", result, out / "extract")
     print_skips(result.skips)

@@ -12,6 +12,7 @@ from .paths import MaybeLogPath
 
 if TYPE_CHECKING:
     from ..capture import AbstractRecording
+    from ..distribute import AbstractExecutor
     from ..motion import AbstractMotion
     from ..types.rig import Rig
     from ..types.trajectory import Trajectory
@@ -42,6 +43,34 @@ class RecordingFlags:
         for remark in recording.remarks:
             print(f"recording  {path.name}: {remark}")
         return recording
+
+
+@Parameter(name="*")
+@dataclass(frozen=True)
+class ExecutorFlags:
+    """Who does the work; the result is the same."""
+
+    executor: Literal["serial", "threads", "processes", "dask"] = "threads"
+    """One thread, several, several processes, or the workers of a Dask cluster."""
+    workers: int | None = None
+    """How many threads or processes; as many as there are cores unless said."""
+    dask_address: str | None = None
+    """Where the scheduler of a Dask cluster listens, as tcp://host:8786; without it one is begun
+    here."""
+
+    def make(self) -> "AbstractExecutor":
+        """Make the executor that these flags describe."""
+        from ..distribute import Dask, Processes, Serial, Threads
+
+        if self.dask_address is not None and self.executor != "dask":
+            raise InputError("--dask-address goes with --executor dask; leave it out.")
+        if self.executor == "dask":
+            return Dask(self.dask_address, self.workers)
+        if self.executor == "serial":
+            if self.workers is not None:
+                raise InputError("--workers does not go with --executor serial; leave it out.")
+            return Serial()
+        return Processes(self.workers) if self.executor == "processes" else Threads(self.workers)
 
 
 _OF_LOGS = {

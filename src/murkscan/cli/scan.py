@@ -14,7 +14,7 @@ from ..ui.choices import (
     make_mesher,
     make_method,
 )
-from .options import MotionFlags, RecordingFlags, Settings
+from .options import ExecutorFlags, MotionFlags, RecordingFlags, Settings
 from .paths import RecordingPath, RigFile
 from .progress import progress_bars
 from .typed import WORDS
@@ -27,6 +27,7 @@ def scan(
     out: Path,
     motion: MotionFlags = MotionFlags(),
     reading: RecordingFlags = RecordingFlags(),
+    work: ExecutorFlags = ExecutorFlags(),
     extractor: ExtractorName = "murk",
     settings: Settings = (),
     method: MethodName = "ray-sheet",
@@ -61,6 +62,7 @@ def scan(
     """
     motion.check()
     check_settings(settings)
+    executor = work.make()
     with progress_bars() as progress:
         from ..io.rig_toml import load_rig
         from ..survey.scan import scan as run
@@ -79,6 +81,7 @@ def scan(
             frames=frames,
             rig_file=rig,
             command=WORDS.get(),
+            executor=executor,
             progress=progress,
         )
     print_summary(project)

@@ -1,12 +1,18 @@
 """murkscan triangulate: turn stripes into profiles."""
 
 from ..ui.choices import MethodName, make_method
+from .options import ExecutorFlags
 from .paths import ScanFolder
 from .progress import progress_bars
 from .typed import WORDS
 
 
-def triangulate(out: ScanFolder, *, method: MethodName = "ray-sheet") -> None:
+def triangulate(
+    out: ScanFolder,
+    *,
+    method: MethodName = "ray-sheet",
+    work: ExecutorFlags = ExecutorFlags(),
+) -> None:
     """Turn the stripes of a scan into profiles in the camera's frame.
 
     Parameters
@@ -16,6 +22,7 @@ def triangulate(out: ScanFolder, *, method: MethodName = "ray-sheet") -> None:
     method
         The way from pixels to points.
     """
+    executor = work.make()
     from ..project import Project
     from ..survey.scan_rig import load_scan_rig
     from ..survey.triangulate import triangulate_stripes
@@ -24,6 +31,10 @@ def triangulate(out: ScanFolder, *, method: MethodName = "ray-sheet") -> None:
     project = Project(out, WORDS.get())
     with progress_bars() as progress:
         result = triangulate_stripes(
-            project, load_scan_rig(project), make_method(method), progress=progress
+            project,
+            load_scan_rig(project),
+            make_method(method),
+            executor=executor,
+            progress=progress,
         )
     print_result("triangulate", result, out / "triangulate")

@@ -1,7 +1,7 @@
 """What every executor can do."""
 
 import abc
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable
 from typing import ClassVar, TypeVar
 
 from ..errors import InputError
@@ -17,7 +17,7 @@ class AbstractExecutor(abc.ABC):
     """Whether items and results stay where they are, so that large ones cost nothing to pass on."""
 
     @abc.abstractmethod
-    def map(self, task: Callable[[T], R], items: Iterable[T]) -> Iterator[R]:
+    def map(self, task: Callable[[T], R], items: Iterable[T]) -> Generator[R, None, None]:
         """Run a task for each item.
 
         Items are taken as they are needed, and few results wait: memory stays bounded however many

@@ -1,7 +1,7 @@
 """Workers of a Dask cluster, on this machine or on many. Extra `[cluster]`."""
 
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable
 from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, final
@@ -41,7 +41,7 @@ class Dask(AbstractExecutor):
                 f"The cluster at {self.address} has its own workers; leave out their number."
             )
 
-    def map(self, task: Callable[[T], R], items: Iterable[T]) -> Iterator[R]:
+    def map(self, task: Callable[[T], R], items: Iterable[T]) -> Generator[R, None, None]:
         """Run a task for each item; see `AbstractExecutor.map`."""
         distributed = import_distributed()
         with ExitStack() as stack:

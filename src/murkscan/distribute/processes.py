@@ -2,7 +2,7 @@
 
 import multiprocessing
 import os
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
@@ -33,7 +33,7 @@ class Processes(AbstractExecutor):
         """Refuse a number that does no work."""
         check_workers(self.workers)
 
-    def map(self, task: Callable[[T], R], items: Iterable[T]) -> Iterator[R]:
+    def map(self, task: Callable[[T], R], items: Iterable[T]) -> Generator[R, None, None]:
         """Run a task for each item; see `AbstractExecutor.map`."""
         workers = self.workers or os.cpu_count() or 1
         source, waiting, deaths = iter(items), list[T](), count(1)
@@ -60,7 +60,7 @@ def _work(
     source: Iterator[T],
     waiting: list[T],
     width: int,
-) -> Iterator[R]:
+) -> Generator[R, None, None]:
     """Work on what waits, and then on what the source gives; what is not done keeps waiting."""
     futures: list[Future[R]] = [pool.submit(task, item) for item in waiting]
     while True:

@@ -1,6 +1,6 @@
 """One item after another."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable
 from dataclasses import dataclass
 from typing import ClassVar, TypeVar, final
 
@@ -17,6 +17,6 @@ class Serial(AbstractExecutor):
 
     shares_memory: ClassVar[bool] = True
 
-    def map(self, task: Callable[[T], R], items: Iterable[T]) -> Iterator[R]:
+    def map(self, task: Callable[[T], R], items: Iterable[T]) -> Generator[R, None, None]:
         """Run a task for each item; see `AbstractExecutor.map`."""
         yield from map(task, items)

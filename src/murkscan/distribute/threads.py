@@ -1,7 +1,7 @@
 """Several threads of this process: kernels let others run while they compute."""
 
 import os
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import ClassVar, TypeVar, final
@@ -29,7 +29,7 @@ class Threads(AbstractExecutor):
         """Refuse a number that does no work."""
         check_workers(self.workers)
 
-    def map(self, task: Callable[[T], R], items: Iterable[T]) -> Iterator[R]:
+    def map(self, task: Callable[[T], R], items: Iterable[T]) -> Generator[R, None, None]:
         """Run a task for each item; see `AbstractExecutor.map`."""
         workers = self.workers or min(os.cpu_count() or 1, _MOST)
         with ThreadPoolExecutor(workers) as pool:

@@ -1,7 +1,7 @@
 """Results in order while only a few tasks are under way."""
 
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable
 from concurrent.futures import Future
 from typing import TypeVar
 
@@ -9,7 +9,9 @@ T = TypeVar("T")
 R = TypeVar("R")
 
 
-def map_in_window(submit: Callable[[T], Future[R]], items: Iterable[T], width: int) -> Iterator[R]:
+def map_in_window(
+    submit: Callable[[T], Future[R]], items: Iterable[T], width: int
+) -> Generator[R, None, None]:
     """Submit items as results are taken.
 
     Args:

@@ -1,43 +1,25 @@
 """Find the stripe in every frame of a recording, in chunks that can be resumed."""
 
-import os
-from collections import deque
-from collections.abc import Iterable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass, field
-from itertools import count
+from collections.abc import Iterator, Mapping
+from contextlib import closing
+from dataclasses import dataclass
 
-from ..capture import AbstractRecording, Skip
+from ..capture import AbstractRecording
+from ..distribute import AbstractExecutor, Threads
 from ..errors import InputError
 from ..extract import AbstractExtractor
 from ..project import EXTRACT, ExtractResult, PartNote, Project, describe
+from ..types.arrays import ColourImage
 from ..types.background import Background
-from ..types.frame import Frame
 from ..types.rig import Rig
 from ..types.stripe import Stripe
+from .chunks import CHUNK, Chunk, Run, missing_runs, read_missing, read_run
 from .overlay import choose_overlays, draw_overlays, name_candidates
 from .progress import Progress, silent
 from .stage_runner import run_stage
 
-CHUNK = 64
-"""Frames a part: 27 MB of pictures at 720 × 576."""
-_MOST_WORKERS = 4
-"""Parts in work at once; two more wait. Reading is what limits a scan, not this."""
-
 _SAMPLES = 24
 """Frames that an extractor learns from."""
-
-
-@dataclass(frozen=True, eq=False)
-class _Chunk:
-    """Frames that make one part, with a halo of frames on both sides."""
-
-    part: int
-    frames: list[Frame] = field(default_factory=list)
-    skips: list[Skip] = field(default_factory=list)
-
-    def owns(self, index: int) -> bool:
-        return index // CHUNK == self.part
 
 
 def extract_recording(
@@ -47,6 +29,7 @@ def extract_recording(
     extractor: AbstractExtractor,
     *,
     laser: int = 0,
+    executor: AbstractExecutor | None = None,
     progress: Progress = silent,
 ) -> ExtractResult:
     """Run the extract stage; parts that are there already are kept.
@@ -57,6 +40,7 @@ def extract_recording(
         rig: The rig that recorded them.
         extractor: The way to find the stripe.
         laser: Number of the laser whose stripe is looked for.
+        executor: Who does it; threads unless given. The result is the same.
         progress: Told of each part.
 
     Raises:
@@ -77,7 +61,7 @@ def extract_recording(
             background = extractor.learn(recording.sample(_SAMPLES), rig, laser=laser)
             project.save_background(background)
         job = _Job(project, rig, extractor, background, laser, overlay_step(recording))
-        _extract_parts(job, recording, progress)
+        _extract_parts(job, recording, executor or Threads(), progress)
         return _count(job)
 
     return run_stage(project, stage, make, prepare=lambda: None, progress=progress)
@@ -100,6 +84,16 @@ def overlay_step(recording: AbstractRecording) -> int:
 
 
 @dataclass(frozen=True, eq=False)
+class _Part:
+    """What one part gives."""
+
+    number: int
+    stripe: Stripe
+    note: PartNote
+    drawings: Mapping[str, ColourImage]
+
+
+@dataclass(frozen=True, eq=False)
 class _Job:
     """What every chunk needs."""
 
@@ -110,8 +104,8 @@ class _Job:
     laser: int
     overlay_step: int
 
-    def extract(self, chunk: _Chunk) -> int:
-        """Make one part: its overlays, its stripes, and last its note."""
+    def find(self, chunk: Chunk) -> _Part:
+        """Find the stripes of one part."""
         stripes = self.extractor.extract(chunk.frames, self.rig, self.background, laser=self.laser)
         found = [
             (frame, stripe)
@@ -124,16 +118,35 @@ class _Job:
             points=tuple(len(stripe) for _, stripe in found),
             skips=tuple((skip.index, skip.count, skip.reason) for skip in chunk.skips),
         )
-        draw_overlays(self.project, found, note, step=self.overlay_step)
-        self.project.save_stripe_part(
-            chunk.part, Stripe.concatenate([stripe for _, stripe in found]), note
-        )
-        return chunk.part
+        drawings = draw_overlays(found, note, step=self.overlay_step)
+        stripe = Stripe.concatenate([stripe for _, stripe in found])
+        return _Part(chunk.part, stripe, note, drawings)
+
+    def save(self, part: _Part) -> int:
+        """Write one part: its overlays, its stripes, and last its note."""
+        for name, picture in part.drawings.items():
+            self.project.save_overlay(name, picture)
+        self.project.save_stripe_part(part.number, part.stripe, part.note)
+        return part.number
 
 
-def _extract_parts(job: _Job, recording: AbstractRecording, progress: Progress) -> None:
+@dataclass(frozen=True, eq=False)
+class _RunTask:
+    """A run of parts that reads its own frames, wherever it is done."""
+
+    job: _Job
+    recording: AbstractRecording
+
+    def __call__(self, run: Run) -> list[_Part]:
+        halo = self.job.extractor.look_ahead
+        return [self.job.find(chunk) for chunk in read_run(self.recording, run, halo=halo)]
+
+
+def _extract_parts(
+    job: _Job, recording: AbstractRecording, executor: AbstractExecutor, progress: Progress
+) -> None:
     """Make the parts that are missing, and keep the overlays that are chosen among all."""
-    for part in _run(job, recording):
+    for part in _run(job, recording, executor):
         progress("extract", (part + 1) * CHUNK, recording.num_frames)
     # A drawing may have been lost with everything else of its part in place: then that is redone.
     lost = choose_overlays(_notes(job), step=job.overlay_step) - {*job.project.find_overlays()}
@@ -141,7 +154,7 @@ def _extract_parts(job: _Job, recording: AbstractRecording, progress: Progress) 
         if lost.intersection(name_candidates(note, step=job.overlay_step)):
             job.project.discard_stripe_part(part)
     if lost:
-        for _ in _run(job, recording):
+        for _ in _run(job, recording, executor):
             progress("extract", 0, None)
     chosen = choose_overlays(_notes(job), step=job.overlay_step)
     for name in job.project.find_overlays():
@@ -149,67 +162,19 @@ def _extract_parts(job: _Job, recording: AbstractRecording, progress: Progress) 
             job.project.remove_overlay(name)
 
 
-def _run(job: _Job, recording: AbstractRecording) -> Iterator[int]:
-    """Read on in this thread while others extract; hold few chunks at once."""
-    workers = min(os.cpu_count() or 1, _MOST_WORKERS)
-    waiting: deque[Future[int]] = deque()
-    with ThreadPoolExecutor(workers) as pool:
-        try:
-            for chunk in _missing_chunks(job, recording):
-                waiting.append(pool.submit(job.extract, chunk))
-                if len(waiting) > workers:
-                    yield waiting.popleft().result()
-            while waiting:
-                yield waiting.popleft().result()
-        finally:
-            pool.shutdown(wait=True, cancel_futures=True)
-
-
-def _missing_chunks(job: _Job, recording: AbstractRecording) -> Iterator[_Chunk]:
-    there = {part for part, _ in job.project.load_stripe_parts()}
-    first = next(part for part in count() if part not in there)
-    halo, skips = job.extractor.look_ahead, list[Skip]()
-    frames = recording.frames(max(first * CHUNK - halo, 0), on_skip=skips.append)
-    for chunk in cut_chunks(frames, skips, first=first, halo=halo):
-        if chunk.part not in there:
-            yield chunk
-
-
-def cut_chunks(
-    frames: Iterable[Frame], skips: list[Skip], *, first: int, halo: int
-) -> Iterator[_Chunk]:
-    """Cut frames into chunks from part `first` on, each with `halo` frames of its neighbours.
-
-    Skips that were reported go with the part that they fall into, late ones with the last part.
-    """
-    kept: list[Frame] = []
-    part = first
-    for frame in frames:
-        while frame.index >= (part + 1) * CHUNK + halo:
-            yield _cut(part, kept, skips, halo)
-            part += 1
-            kept = [one for one in kept if one.index >= part * CHUNK - halo]
-        kept.append(frame)
-    while kept and part <= kept[-1].index // CHUNK:
-        yield _cut(part, kept, skips, halo)
-        part += 1
-    if skips:
-        yield _Chunk(part, [], skips)
-
-
-def _cut(part: int, kept: list[Frame], skips: list[Skip], halo: int) -> _Chunk:
-    low, high = part * CHUNK, (part + 1) * CHUNK
-    own, later = list[Skip](), list[Skip]()
-    for skip in skips:
-        end = skip.index + skip.count
-        inside = (max(skip.index, low), min(end, high))
-        if inside[0] < inside[1]:
-            own.append(Skip(inside[0], skip.reason, inside[1] - inside[0]))
-        if end > high:
-            later.append(Skip(max(skip.index, high), skip.reason, end - max(skip.index, high)))
-    skips[:] = later
-    near = [frame for frame in kept if low - halo <= frame.index < high + halo]
-    return _Chunk(part, near, own)
+def _run(job: _Job, recording: AbstractRecording, executor: AbstractExecutor) -> Iterator[int]:
+    """Make the missing parts; this process alone writes, so that a worker may die."""
+    there = frozenset(part for part, _ in job.project.load_stripe_parts())
+    halo = job.extractor.look_ahead
+    if executor.shares_memory or not recording.starts_anywhere:
+        chunks = read_missing(recording, there, halo=halo)
+        with closing(executor.map(job.find, chunks)) as parts:
+            yield from map(job.save, parts)
+        return
+    runs = missing_runs(recording, there)
+    with closing(executor.map(_RunTask(job, recording), runs)) as found:
+        for some in found:
+            yield from map(job.save, some)
 
 
 def _notes(job: _Job) -> list[PartNote]:

@@ -7,7 +7,8 @@ so a run that was killed, or lost a part, ends with the same pictures as any oth
 from collections.abc import Iterable, Sequence
 
 from ..extract import draw_stripe
-from ..project import PartNote, Project
+from ..project import PartNote
+from ..types.arrays import ColourImage
 from ..types.frame import Frame
 from ..types.stripe import Stripe
 
@@ -20,14 +21,13 @@ _POOREST = 4
 
 
 def draw_overlays(
-    project: Project, found: Sequence[tuple[Frame, Stripe]], note: PartNote, *, step: int
-) -> None:
-    """Draw the frames of a part that may be chosen to stay."""
-    drawn = name_candidates(note, step=step)
-    for frame, stripe in found:
-        for name in drawn:
-            if _frame_of(name) == frame.index:
-                project.save_overlay(name, draw_stripe(frame, stripe))
+    found: Sequence[tuple[Frame, Stripe]], note: PartNote, *, step: int
+) -> dict[str, ColourImage]:
+    """Draw the frames of a part that may be chosen to stay, by the names of their pictures."""
+    frames = {frame.index: (frame, stripe) for frame, stripe in found}
+    return {
+        name: draw_stripe(*frames[_frame_of(name)]) for name in name_candidates(note, step=step)
+    }
 
 
 def name_candidates(note: PartNote, *, step: int) -> list[str]:

@@ -7,6 +7,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from ..capture import AbstractRecording
+from ..distribute import AbstractExecutor
 from ..extract import AbstractExtractor, Murk
 from ..io.rig_toml import as_tables
 from ..mesh import AbstractMesher, GridMesh
@@ -39,6 +40,7 @@ def scan(
     frames: bool = False,
     rig_file: Path | None = None,
     command: Sequence[str] = (),
+    executor: AbstractExecutor | None = None,
     progress: Progress = silent,
 ) -> Project:
     """Turn a recording into a measured 3D model, and say how it went.
@@ -58,6 +60,7 @@ def scan(
         frames: Whether to write one cloud a frame for more than 500 frames, too.
         rig_file: The file of the rig, for what the report says of its calibration.
         command: The words that were typed after `murkscan`, for the report.
+        executor: Who finds stripes and triangulates; threads unless given. The result is the same.
         progress: Told how far each stage is.
 
     Returns:
@@ -79,8 +82,10 @@ def scan(
     project.check_writable()
     with project.hold():
         begin_scan(project, recording, rig, laser=laser, settings=settings, rig_file=rig_file)
-        extract_recording(project, recording, rig, extractor, laser=laser, progress=progress)
-        triangulate_stripes(project, rig, method, progress=progress)
+        extract_recording(
+            project, recording, rig, extractor, laser=laser, executor=executor, progress=progress
+        )
+        triangulate_stripes(project, rig, method, executor=executor, progress=progress)
         follow_motion(project, motion)
         build_cloud(project, rig, frames=frames, progress=progress)
         build_mesh(project, mesher, progress=progress)

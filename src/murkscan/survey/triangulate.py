@@ -1,11 +1,13 @@
 """Turn all stripes of a scan into profiles, one part after another."""
 
-import os
-from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
+from dataclasses import dataclass
 
+from ..distribute import AbstractExecutor, Threads
 from ..errors import Degenerate
 from ..project import EXTRACT, TRIANGULATE, Project, TriangulateResult, describe
 from ..triangulate import AbstractTriangulation, triangulate
+from ..types.profile import Profile
 from ..types.rig import Rig
 from .progress import Progress, silent
 from .stage_runner import run_stage
@@ -16,9 +18,17 @@ def triangulate_stripes(
     rig: Rig,
     method: AbstractTriangulation,
     *,
+    executor: AbstractExecutor | None = None,
     progress: Progress = silent,
 ) -> TriangulateResult:
     """Run the triangulate stage; parts that are there already are kept.
+
+    Args:
+        project: Whose stripes they are.
+        rig: The rig that recorded them.
+        method: The way from pixels to points.
+        executor: Who does it; threads unless given. The result is the same.
+        progress: Told of each part.
 
     Raises:
         MissingResult: The extract stage has not been finished.
@@ -33,7 +43,8 @@ def triangulate_stripes(
     )
 
     def make(parts: list[int]) -> TriangulateResult:
-        points = _triangulate_parts(project, rig, method, parts, progress)
+        job = _Job(project, rig, method)
+        points = _triangulate_parts(job, parts, executor or Threads(), progress)
         if source.result.points and not points:
             raise Degenerate(
                 f"None of the {source.result.points} stripe centres sees the laser's sheet in "
@@ -48,26 +59,30 @@ def triangulate_stripes(
     return run_stage(project, stage, make, prepare=prepare, progress=progress)
 
 
+@dataclass(frozen=True, eq=False)
+class _Job:
+    """What every part needs."""
+
+    project: Project
+    rig: Rig
+    method: AbstractTriangulation
+
+    def triangulate(self, part: int) -> tuple[int, Profile]:
+        """Make one part."""
+        stripe = self.project.load_stripe_part(part)
+        return part, triangulate(stripe, self.rig, self.method)
+
+
 def _triangulate_parts(
-    project: Project,
-    rig: Rig,
-    method: AbstractTriangulation,
-    parts: list[int],
-    progress: Progress,
+    job: _Job, parts: list[int], executor: AbstractExecutor, progress: Progress
 ) -> int:
-    """Make the parts that are missing, and count the points of all."""
-    there = project.find_profile_parts()
-
-    def run(part: int) -> int:
-        if part in there:
-            return len(project.load_profile_part(part))
-        profile = triangulate(project.load_stripe_part(part), rig, method)
-        project.save_profile_part(part, profile)
-        return len(profile)
-
-    points = 0
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        for done, count in enumerate(pool.map(run, parts)):
-            points += count
-            progress("triangulate", done + 1, len(parts))
+    """Make the parts that are missing, and count the points of all; this process alone writes."""
+    there = job.project.find_profile_parts()
+    points = sum(len(job.project.load_profile_part(part)) for part in parts if part in there)
+    missing = [part for part in parts if part not in there]
+    with closing(executor.map(job.triangulate, missing)) as made:
+        for done, (part, profile) in enumerate(made, start=len(parts) - len(missing) + 1):
+            job.project.save_profile_part(part, profile)
+            points += len(profile)
+            progress("triangulate", done, len(parts))
     return points

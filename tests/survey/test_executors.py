@@ -1,0 +1,83 @@
+"""Whoever does the work, it is the same to the byte."""
+
+import filecmp
+
+import numpy as np
+import pytest
+
+import murkscan as ms
+from murkscan.cli.main import run
+from murkscan.distribute import Dask, Processes, Serial, Threads
+from murkscan.io.images import write_image
+from murkscan.survey.extract import extract_recording
+from murkscan.survey.scan import begin_scan
+from murkscan.survey.triangulate import triangulate_stripes
+
+from ..mutants import RIG
+
+NUM = 1200
+LOST = [*range(3), *range(505, 600), *range(1100, 1200)]
+"""At the beginning, over the border of two runs of parts, and at the end, over several parts."""
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("recorded")
+    (folder / "rig.toml").write_text(RIG)
+    rows = np.arange(64)[:, None]
+    for number in range(NUM):
+        centre = 30 + 8 * np.sin(number / 50)
+        picture = np.tile(20 + 180 * np.exp(-0.5 * ((rows - centre) / 1.5) ** 2), (1, 96))
+        write_image(folder / "frames" / f"{number}.pgm", picture.astype(np.uint8))
+    for number in LOST:
+        (folder / "frames" / f"{number}.pgm").write_bytes(b"lost")
+    return folder
+
+
+def extract(recorded, out, executor):
+    rig = ms.load_rig(recorded / "rig.toml")
+    recording = ms.open_recording(recorded / "frames", fps=25.0)
+    project = ms.Project(out)
+    begin_scan(project, recording, rig, laser=0, settings={})
+    result = extract_recording(project, recording, rig, ms.GrayGravity(), executor=executor)
+    triangulate_stripes(project, rig, ms.RaySheet(), executor=executor)
+    return result
+
+
+@pytest.fixture(scope="module")
+def serial(recorded, tmp_path_factory):
+    out = tmp_path_factory.mktemp("serial") / "out"
+    result = extract(recorded, out, Serial())
+    assert (result.frames, result.skipped) == (NUM - len(LOST), len(LOST))
+    return out
+
+
+@pytest.mark.parametrize(
+    "executor", [Threads(2), Processes(2), Dask(workers=2)], ids=lambda one: type(one).__name__
+)
+def test_the_parts_are_the_same_to_the_byte(recorded, serial, tmp_path, executor):
+    if isinstance(executor, Dask):
+        pytest.importorskip("distributed", reason="the extra [cluster] is not installed")
+    extract(recorded, tmp_path / "out", executor)
+    made = [file.relative_to(serial) for file in sorted(serial.rglob("*")) if file.is_file()]
+    made = [name for name in made if name.suffix in (".parquet", ".png") or "frames" in name.parts]
+    assert len(made) > 2 * NUM // 64
+    _, *different = filecmp.cmpfiles(serial, tmp_path / "out", made, shallow=False)
+    assert different == [[], []]
+    there = sorted(file.name for file in (tmp_path / "out").rglob("*") if file.is_file())
+    assert there == sorted(file.name for file in serial.rglob("*") if file.is_file())
+
+
+@pytest.mark.parametrize(
+    "flags",
+    [
+        ["--dask-address", "tcp://127.0.0.1:1"],
+        ["--executor", "serial", "--workers", "2"],
+        ["--workers", "0"],
+        ["--executor", "dask", "--dask-address", "tcp://a:1", "--workers", "2"],
+    ],
+)
+def test_flags_that_mean_nothing_together_are_refused_at_once(recorded, tmp_path, flags):
+    words = ["scan", str(recorded / "frames"), "--rig", str(recorded / "rig.toml")]
+    assert run([*words, "--step-mm", "1", *flags, "--out", str(tmp_path / "out")]) == 2
+    assert not (tmp_path / "out").exists()
