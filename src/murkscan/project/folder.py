@@ -250,10 +250,18 @@ class Project:
         """Read the profiles of the points that a finished cloud keeps, part by part, in its order.
 
         So row i of all of them is the profile's side of the cloud's point i: its pixel, its time.
+
+        Raises:
+            MissingResult: A stage has not been finished, or a part of it is lost.
         """
         self.finished(CLOUD)
-        parts = zip(self.find_cloud_parts(), self.load_placed_parts(), strict=True)
-        for part, profile in parts:
+        there = self.find_cloud_parts()
+        if len(there) != len(self.find_profile_parts()):
+            raise MissingResult(
+                f"Parts of {self.root / 'cloud'} are missing or damaged; run `murkscan scan` "
+                "again, which makes them."
+            )
+        for part, profile in zip(there, self.load_placed_parts(), strict=True):
             yield profile[self.load_cloud_part(part).stays]
 
     def export_cloud(self, *, frames: bool) -> None:
