@@ -82,8 +82,6 @@ def run_model(folder: Path, out: Path) -> None:
 
 def run_again(folder: Path, out: Path) -> None:
     """Make it with another speed in a folder that holds a scan."""
-    if not out.exists():
-        shutil.copytree(folder / "a", out)
     model(folder, out, 0.9 * SPEED)
 
 
@@ -93,10 +91,17 @@ def run_pages(folder: Path, out: Path) -> None:
     from murkscan.survey.report import write_report
     from murkscan.survey.view import draw_views
 
-    if not out.exists():
-        shutil.copytree(folder / "a", out)
     draw_views(Project(out), most=1000)
     write_report(Project(out))
+
+
+def run_mesh(folder: Path, out: Path) -> None:
+    """Make the surface anew, with fewer triangles."""
+    from murkscan.mesh import GridMesh
+    from murkscan.project import Project
+    from murkscan.survey.mesh import Finish, build_mesh
+
+    build_mesh(Project(out), GridMesh(), finish=Finish(faces=2000))
 
 
 def run_merge(folder: Path, out: Path) -> None:
@@ -119,9 +124,13 @@ JOBS: dict[str, Callable[[Path, Path], None]] = {
     "model": run_model,
     "again": run_again,
     "pages": run_pages,
+    "mesh": run_mesh,
     "merge": run_merge,
     "export": run_export,
 }
+
+ON_A_SCAN = ("again", "pages", "mesh")
+"""Those that begin in a folder that holds a finished scan."""
 
 
 def in_a_child(run: Callable[[], None]) -> int:
@@ -184,13 +193,20 @@ def _without_times(file: Path) -> object:
     return file.read_bytes()
 
 
+def begin_in(folder: Path, out: Path) -> None:
+    """Make a job's folder as it is before the job: there is none, or a scan in it."""
+    shutil.rmtree(out, ignore_errors=True)
+    if sys.argv[2] in ON_A_SCAN:
+        shutil.copytree(folder / "a", out)
+
+
 def main() -> None:
     folder, job, moments = Path(sys.argv[1]), JOBS[sys.argv[2]], sys.argv[3:]
     for module in ("survey.scan", "survey.merge", "survey.export"):
         __import__(f"murkscan.{module}")
     in_a_child(lambda: make_inputs(folder))
     want, out = folder / f"want-{sys.argv[2]}", folder / f"out-{sys.argv[2]}"
-    shutil.rmtree(want, ignore_errors=True)
+    begin_in(folder, want)
 
     def count() -> None:
         counted = kill_before(0, want)
@@ -203,7 +219,7 @@ def main() -> None:
         if moment == "count":
             print(json.dumps({"count": int((folder / "count").read_text())}), flush=True)
             continue
-        shutil.rmtree(out, ignore_errors=True)
+        begin_in(folder, out)
 
         def disturbed(moment: str = moment) -> None:
             if "." in moment:
