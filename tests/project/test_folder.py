@@ -71,6 +71,16 @@ def test_a_folder_that_a_kill_left_without_a_record_is_taken_up(tmp_path, left):
     assert (tmp_path / "mesh/mine.txt").exists() == (left == "a file of others")
 
 
+def test_the_ledger_that_a_kill_left_beside_a_finished_stage_is_removed(project):
+    stage = project.stage(CLOUD, settings={}, inputs={})
+    ledger = project.root / "cloud/.ledger.jsonl"
+    ledger.write_text('{"file": "cloud.ply"}\n')
+    done = run_stage(project, stage, lambda _: None, prepare=lambda: None, progress=Stoppable())
+    assert done.points > 0
+    assert not ledger.exists()
+    assert len(project.load_cloud()) == done.points
+
+
 def test_a_ledger_that_was_tampered_with_removes_nothing_outside(tmp_path):
     (tmp_path / "precious.txt").write_text("mine")
     project = Project(tmp_path / "out")
@@ -83,7 +93,7 @@ def test_a_ledger_that_was_tampered_with_removes_nothing_outside(tmp_path):
 
 
 @pytest.mark.parametrize("place", [0.1, 0.5, 0.99])
-@pytest.mark.parametrize("name", ["cloud/cloud.ply", "motion/trajectory.csv"])
+@pytest.mark.parametrize("name", ["cloud/points/000000.parquet", "motion/trajectory.csv"])
 def test_one_flipped_bit_is_noticed_when_the_file_is_read(project, name, place):
     file = project.root / name
     data = bytearray(file.read_bytes())

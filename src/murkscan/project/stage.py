@@ -123,6 +123,10 @@ class Stage(Generic[R]):
         save_value(self.folder / _FILE, record)
         close_ledger(self.folder)
 
+    def settle(self) -> None:
+        """Remove what a kill has left of a stage that is finished: its ledger."""
+        close_ledger(self.folder)
+
     def _is_sound(self, name: str, mark: Mark | None) -> bool:
         return mark is not None and is_whole(self.folder / name, mark)
 

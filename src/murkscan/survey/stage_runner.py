@@ -36,6 +36,7 @@ def run_stage(
         DeviceError: The disk is full.
     """
     if (result := stage.result()) is not None:
+        stage.settle()
         return result
     with project.hold():
         since = time.monotonic()
