@@ -26,11 +26,17 @@ class StageFiles:
         strike(self.folder, name)
 
     def made(self, below: str = "") -> Mapping[str, Mark]:
-        """Give the files in a subfolder that are whole, as far as their size tells, by name."""
+        """Give the files in a subfolder by name: of a finished stage all, so that one is missed.
+
+        Of a stage that is being made those that are whole, as far as their size tells.
+        """
+        marks, is_done = self._marks()
         return {
             name: mark
-            for name, mark in sorted(self._marks().items())
-            if name.startswith(below) and mark is not None and is_whole(self.folder / name, mark)
+            for name, mark in sorted(marks.items())
+            if name.startswith(below)
+            and mark is not None
+            and (is_done or is_whole(self.folder / name, mark))
         }
 
     def checked(self, name: str) -> Path:
@@ -40,7 +46,7 @@ class StageFiles:
             MissingResult: It is not there.
             FormatError: It is not as it was written.
         """
-        mark, path = self._marks().get(name), self.folder / name
+        mark, path = self._marks()[0].get(name), self.folder / name
         if mark is None or not path.is_file():
             raise MissingResult(f"{path} is missing; run `murkscan scan` again, which makes it.")
         if mark_file(path) != mark:
@@ -50,8 +56,9 @@ class StageFiles:
             )
         return path
 
-    def _marks(self) -> Marks:
+    def _marks(self) -> tuple[Marks, bool]:
+        """Give the marks of what has been made, and whether the stage is finished."""
         record = read_record(self.folder)
         if record is not None and record.result is not None:
-            return record.files
-        return read_ledger(self.folder)
+            return record.files, True
+        return read_ledger(self.folder), False

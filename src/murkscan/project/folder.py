@@ -255,13 +255,8 @@ class Project:
             MissingResult: A stage has not been finished, or a part of it is lost.
         """
         self.finished(CLOUD)
-        there = self.find_cloud_parts()
-        if len(there) != len(self.find_profile_parts()):
-            raise MissingResult(
-                f"Parts of {self.root / 'cloud'} are missing or damaged; run `murkscan scan` "
-                "again, which makes them."
-            )
-        for part, profile in zip(there, self.load_placed_parts(), strict=True):
+        parts = zip(self.find_cloud_parts(), self.load_placed_parts(), strict=True)
+        for part, profile in parts:
             yield profile[self.load_cloud_part(part).stays]
 
     def export_cloud(self, *, frames: bool) -> None:
