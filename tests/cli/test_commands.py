@@ -73,7 +73,7 @@ def test_every_command_has_help(command, capsys):
         (("--step-mm", "1", "--extractor", "magic"), "magic"),
         (("--step-mm", "1", "--start-time", "noon", "--poses", "."), "exactly one of"),
         (("--step-mm", "1", "--start-time", "5"), "goes with --poses"),
-        (("--step-mm", "1", "--set", "clutter=nan"), "clutter"),
+        (("--step-mm", "1", "--set", "birth=nan"), "birth"),
     ],
 )
 def test_a_wrong_scan_is_one_sentence_and_status_2(short, tmp_path, capfd, more, says):
@@ -163,7 +163,7 @@ def test_simulate_says_what_it_wants(capsys, tmp_path):
         ["scan", "nothing", "--rig", "no.toml", "--step-mm", "1", "--out", "x"],
         ["scan", ".", "--rig", "no.toml", "--step-mm", "1", "--out", "x"],
         ["scan", ".", "--rig", ".", "--out", "x"],
-        ["extract", ".", "--rig", ".", "--out", "x", "--set", "clutter"],
+        ["extract", ".", "--rig", ".", "--out", "x", "--set", "birth"],
         ["calibrate", "camera", "nothing", "--board", "9x6", "--square-mm", "30", "--rig", "x"],
         ["measure", "nothing", "area"],
         ["view", "nothing"],

@@ -144,7 +144,7 @@ def test_the_bend_of_a_ball_is_not_taken_for_scatter():
     """
     ball = 60.0 + 0.0056 * (LINES - LENGTH / 2) ** 2
     film = _film([8.0 + _light(ball + 0.3 * i, 180.0) for i in range(12)])
-    shape = Murk().learn(film, RIG).stripe
+    shape = Murk().learn(film, RIG).shapes[0]
     assert shape is not None
     assert shape.floor < 0.01
 

@@ -11,12 +11,13 @@ _FAR = 12.0
 
 @njit(cache=True, nogil=True)
 def follow_chain(
-    positions: np.ndarray, heights: np.ndarray, counts: np.ndarray, evidence: np.ndarray,
-    length: int, birth: float, death: float, miss: float, bends: np.ndarray,
+    positions: np.ndarray, heights: np.ndarray, counts: np.ndarray, grains: np.ndarray,
+    evidence: np.ndarray, length: int, birth: float, death: float, miss: float, bends: np.ndarray,
 ) -> np.ndarray:  # fmt: skip
     """Give the posterior of each ridge (lines, most), by the forward-backward algorithm.
 
-    A state is a ridge of the line, or that the line shows no stripe. `evidence` is the likelihood
+    A state is a ridge of the line, or that the line shows no stripe. Positions are as fine as a
+    tenth of a grain. `evidence` is the likelihood
     ratio of each ridge against noise and clutter, 0 for one that may not be taken. `bends` holds
     the scale of small steps and of larger ones [px a line], their shares, and the scale of steps
     in the logarithm of the height.
@@ -26,7 +27,7 @@ def follow_chain(
         each line scaled on its own.
     """
     num_lines, most = positions.shape
-    links = _weigh_links(positions, heights, counts, evidence, length, death, miss, bends)
+    links = _weigh_links(positions, heights, counts, grains, evidence, length, death, miss, bends)
     start = birth / length * 0.25
     ahead, none_ahead = np.zeros((num_lines, most)), np.zeros(num_lines)
     scale = np.zeros(num_lines)
@@ -85,8 +86,8 @@ def _run_back(
 
 @njit(cache=True, nogil=True)
 def _weigh_links(
-    positions: np.ndarray, heights: np.ndarray, counts: np.ndarray, evidence: np.ndarray,
-    length: int, death: float, miss: float, bends: np.ndarray,
+    positions: np.ndarray, heights: np.ndarray, counts: np.ndarray, grains: np.ndarray,
+    evidence: np.ndarray, length: int, death: float, miss: float, bends: np.ndarray,
 ) -> np.ndarray:  # fmt: skip
     """Give how probable each step is to a ridge from one up to three missing lines before."""
     num_lines, most = positions.shape
@@ -103,12 +104,16 @@ def _weigh_links(
                         continue
                     step = abs(positions[u, k] - positions[u - gap, j])
                     change = logs[u, k] - logs[u - gap, j]
-                    links[u, gap - 1, k, j] = kept * _weigh_step(step, change, gap, length, bends)
+                    grain = max(grains[u, k], grains[u - gap, j])
+                    like = _weigh_step(step, change, gap, length, grain, bends)
+                    links[u, gap - 1, k, j] = kept * like
     return links
 
 
 @njit(cache=True, nogil=True)
-def _weigh_step(step: float, change: float, gap: int, length: int, bends: np.ndarray) -> float:
+def _weigh_step(
+    step: float, change: float, gap: int, length: int, grain: float, bends: np.ndarray
+) -> float:
     """Give the density of a step in position and in the logarithm of height.
 
     Steps in position are two Laplace laws and a jump to anywhere; those in height a Gaussian with
@@ -117,7 +122,7 @@ def _weigh_step(step: float, change: float, gap: int, length: int, bends: np.nda
     near, wide, near_share, wide_share, scale = bends
     density = (1.0 - near_share - wide_share) / length
     if step < _FAR * gap:
-        narrow, broad = near * gap + 0.1, wide * gap
+        narrow, broad = near * gap + 0.1 * grain, wide * gap
         density += near_share * np.exp(-step / narrow) / (2.0 * narrow)
         density += wide_share * np.exp(-step / broad) / (2.0 * broad)
     spread = scale * np.sqrt(gap)

@@ -6,16 +6,19 @@ from numba import njit
 
 @njit(cache=True, nogil=True, fastmath=True)
 def score_pixels(
-    levels: np.ndarray, template: np.ndarray, fixed: float, gain: float, least: float
+    signal: np.ndarray, levels: np.ndarray, template: np.ndarray, law: np.ndarray
 ) -> np.ndarray:
     """Correlate each column with a template, and divide by the noise of its surroundings.
 
-    The noise has the variance max(fixed + gain · level, least), at the mean level of the two outer
-    pixels on both sides of the template's window. Beyond its ends a column goes on as it ends.
+    `law` holds the fixed part of the variance, its part per level and per level squared, and its
+    least; the level is the mean one of the two outer pixels on both sides of the template's window.
+    Beyond its ends a column goes on as it ends.
     """
     length, num_lines = levels.shape
     size = len(template)
     half = size // 2
+    fixed, gain = np.float32(law[0]), np.float32(law[1])
+    relative, least = np.float32(law[2]), np.float32(law[3])
     scores = np.empty((length, num_lines), np.float32)
     total = np.empty(num_lines, np.float32)
     rim = np.empty(num_lines, np.float32)
@@ -23,15 +26,17 @@ def score_pixels(
         total[:] = 0.0
         rim[:] = 0.0
         for k in range(size):
-            row = levels[min(max(v + k - half, 0), length - 1)]
+            at = min(max(v + k - half, 0), length - 1)
+            row = signal[at]
             weight = template[k]
             for u in range(num_lines):
                 total[u] += weight * row[u]
             if k < 2 or k >= size - 2:
+                raw = levels[at]
                 for u in range(num_lines):
-                    rim[u] += np.float32(0.25) * row[u]
+                    rim[u] += np.float32(0.25) * raw[u]
         for u in range(num_lines):
-            variance = max(np.float32(fixed) + np.float32(gain) * rim[u], np.float32(least))
+            variance = max(fixed + rim[u] * (gain + rim[u] * relative), least)
             scores[v, u] = total[u] / np.sqrt(variance)
     return scores
 

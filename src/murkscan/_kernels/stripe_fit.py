@@ -73,12 +73,13 @@ def _rise(levels: np.ndarray, line: int, middle: int, half: int) -> float:
 
 @njit(cache=True, nogil=True)
 def fit_stripes(
-    levels: np.ndarray, lines: np.ndarray, starts: np.ndarray, skirts: np.ndarray,
-    noise: np.ndarray, shape: np.ndarray,
+    levels: np.ndarray, signal: np.ndarray, lines: np.ndarray, starts: np.ndarray,
+    skirts: np.ndarray, noise: np.ndarray, shape: np.ndarray,
 ) -> np.ndarray:  # fmt: skip
     """Fit a stripe to each start, by Gauss and Newton's method with weights 1 / variance.
 
-    `noise` holds the variance's fixed part, its part per level, its least, and the level of white;
+    `levels` are as recorded, `signal` without what is fixed to the picture. `noise` holds the
+    variance's fixed part, its part per level and per level squared, its least, and white's level;
     `shape` the core's width [px] and its prior's spread (of the logarithm), the skirt's share of
     the height and its prior's spread; `skirts` its profile in each window.
     Gives centre, its standard deviation, height, core's width and skirt's share (n 5); NaN where
@@ -91,14 +92,16 @@ def fit_stripes(
     for i in range(len(lines)):
         middle = int(np.rint(starts[i]))
         low, high = max(middle - half, 0), min(middle + half, len(levels) - 1)
-        scan = levels[low : high + 1, lines[i]]
+        raw, scan = levels[low : high + 1, lines[i]], signal[low : high + 1, lines[i]]
         skirt = skirts[i, low - middle + half : high - middle + half + 1]
-        if np.sum(scan >= noise[3]) > _GLARE * shape[0] + 1.0:
+        if np.sum(raw >= noise[4]) > _GLARE * shape[0] + 1.0:
             continue
         _begin(scan, middle - low, starts[i] - middle, shape, p)
         variance = -1.0
         for turn in range(_MOST_STEPS):
-            is_enough = _normal_equations(scan, skirt, middle - low, p, noise, shape, matrix, step)
+            is_enough = _normal_equations(
+                raw, scan, skirt, middle - low, p, noise, shape, matrix, step
+            )
             if not is_enough or not solve(matrix, step):
                 variance = -1.0
                 break
@@ -141,8 +144,8 @@ def _take_step(p: np.ndarray, step: np.ndarray) -> None:
 
 @njit(cache=True, nogil=True)
 def _normal_equations(
-    scan: np.ndarray, skirt: np.ndarray, middle: int, p: np.ndarray, noise: np.ndarray,
-    shape: np.ndarray, matrix: np.ndarray, right: np.ndarray,
+    raw: np.ndarray, scan: np.ndarray, skirt: np.ndarray, middle: int, p: np.ndarray,
+    noise: np.ndarray, shape: np.ndarray, matrix: np.ndarray, right: np.ndarray,
 ) -> bool:  # fmt: skip
     """Fill the normal equations at p, with the priors; white pixels are left out.
 
@@ -155,7 +158,7 @@ def _normal_equations(
     count = 0
     for v in range(len(scan)):
         level = float(scan[v])
-        if level >= noise[3]:
+        if raw[v] >= noise[4]:
             continue
         along = float(v - middle)
         x = (along - p[0]) / width
@@ -166,7 +169,8 @@ def _normal_equations(
         slopes[3] = p[1] * skirt[v]
         slopes[4], slopes[5], slopes[6] = 1.0, along, along * along
         model = p[1] * slopes[1] + p[4] + p[5] * along + p[6] * slopes[6]
-        weight = 1.0 / max(noise[0] + noise[1] * min(max(model, 0.0), noise[3]), noise[2])
+        lit = min(max(model + float(raw[v]) - level, 0.0), noise[4])
+        weight = 1.0 / max(noise[0] + lit * (noise[1] + lit * noise[2]), noise[3])
         off = level - model
         count += 1
         for a in range(_SIZE):

@@ -1,7 +1,7 @@
 """The exact centre of a stripe where its ridge is, and how sure it is."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,7 +12,8 @@ from .._kernels.join_centres import join_centres
 from .._kernels.stripe_fit import fit_stripes, spread_skirts
 from ..types.arrays import Indices, Mask, Scalars
 from ..types.background import Noise, StripeShape
-from .ridges import Ridges
+from .plateaus import measure_at
+from .ridges import PLATEAU, Marks, Ridges
 from .scan_lines import ScanLines
 
 SKIRT = 2.5
@@ -25,6 +26,8 @@ _ROUGH = 0.04
 """Roughness of a surface from scan line to scan line, as far as nothing shows more [px]."""
 _INNER, _APART = 3, 4.0
 """Scan lines from a stripe's end to where it is as bright as it is, and pixels a line that part."""
+_CREDIBLE = 0.2
+"""Share of the height that a ridge's score stands for, below which a fit has explained it away."""
 _BLUR = 0.2
 """Chance that such an end is the surface and not the lens's blur."""
 _RIGHT = 1.5
@@ -49,7 +52,7 @@ class Centres:
         """Count the centres."""
         return len(self.scan_line)
 
-    def __getitem__(self, which: Mask) -> "Centres":
+    def __getitem__(self, which: Mask | Indices) -> "Centres":
         """Pick some of them."""
         columns = (self.scan_line, self.position, self.sigma, self.signal, self.posterior)
         return Centres(self.lines, *(column[which] for column in columns))
@@ -58,6 +61,13 @@ class Centres:
     def index(self) -> int:
         """Number of the frame in its recording."""
         return self.lines.index
+
+    @classmethod
+    def concatenate(cls, parts: Sequence["Centres"]) -> "Centres":
+        """Put centres of one frame one after another."""
+        names = ("scan_line", "position", "sigma", "signal", "posterior")
+        columns = (np.concatenate([getattr(part, name) for part in parts]) for name in names)
+        return cls(parts[0].lines, *columns)
 
 
 @dataclass(frozen=True)
@@ -94,27 +104,85 @@ def fit_ridges(
         width [px of `lines`], and the skirt's share; NaN where nothing fits.
     """
     half = max(6, math.ceil(5 * shape.width) + 3)
-    law = np.array([noise.fixed, noise.gain, noise.least, noise.white])
     look = np.array([shape.width, tightness.width, shape.skirt, tightness.skirt])
     along = SKIRT * shape.width
     across = along * lines.stretch / lines.line_step
-    skirts = spread_skirts(lines.levels, scan_lines, positions, half, along, across)
-    return fit_stripes(lines.levels, scan_lines, positions, skirts, law, look)
+    skirts = spread_skirts(lines.signal, scan_lines, positions, half, along, across)
+    return fit_stripes(
+        lines.levels, lines.signal, scan_lines, positions, skirts, noise.as_law(), look
+    )
 
 
 def find_centres(
-    ridges: Ridges, posterior: Float[np.ndarray, "lines most"], *, noise: Noise, shape: StripeShape
+    ridges: Ridges,
+    posterior: Float[np.ndarray, "lines most"],
+    *,
+    noise: Noise,
+    shapes: Sequence[StripeShape],
 ) -> Centres:
-    """Fit the ridges that are more probably the stripe than not."""
-    line, which = np.nonzero(posterior > 0.5)
-    start = ridges.positions[line, which]
-    found = fit_ridges(ridges.lines, line, start, noise=noise, shape=shape)
-    lines, (position, sigma, height, _, skirt) = ridges.lines, found.T
-    fits = np.isfinite(position)
-    spread = lines.stretch * np.hypot(shape.misfit * sigma, shape.floor)
-    full, signal = lines.as_full_frame(position), height * (1 + skirt)
-    centres = Centres(lines, line, full, spread, signal, posterior[line, which])[fits]
-    return doubt_ends(centres, width=lines.stretch * shape.width)
+    """Fit the ridges that are more probably the stripe than not, each in its own width."""
+    wanted = posterior > 0.5
+    parts = [
+        _fit_one_width(ridges, posterior, wanted & (ridges.shapes == number), noise, shape)
+        for number, shape in enumerate(shapes)
+    ]
+    white = wanted & (ridges.shapes == PLATEAU)
+    if white.any():
+        parts.append(_measure_white(ridges, posterior, white, noise))
+    if len(parts) == 1:
+        return parts[0]
+    joined = Centres.concatenate(parts)
+    return joined[np.argsort(joined.scan_line, kind="stable")]
+
+
+def _is_credible(
+    ridges: Ridges,
+    line: Indices,
+    which: Indices,
+    height: Scalars,
+    noise: Noise,
+    shape: StripeShape,
+) -> Mask:
+    """Tell which fits have a height that their ridge's score can stand for, and a sensor can hold.
+
+    A filter of norm 1 answers a stripe of height A and width w by A √(√π w).
+    """
+    score = ridges.heights[line, which]
+    least = np.sqrt(noise.variance(np.zeros(1)))[0]
+    expected = score * least / math.sqrt(math.sqrt(math.pi) * shape.width)
+    return (height > _CREDIBLE * expected) & (height < 1.5 * noise.white)
+
+
+def _measure_white(
+    ridges: Ridges, posterior: Float[np.ndarray, "lines most"], wanted: Marks, noise: Noise
+) -> Centres:
+    """Measure plateaus of white by both their edges."""
+    lines = ridges.lines
+    line, which = np.nonzero(wanted)
+    middle, sigma, rise, _ = measure_at(lines, line, ridges.positions[line, which], noise).T
+    whole = np.isfinite(middle)
+    full, spread = lines.as_full_frame(middle), lines.stretch * sigma
+    return Centres(lines, line, full, spread, rise, posterior[line, which])[whole]
+
+
+def _fit_one_width(
+    ridges: Ridges,
+    posterior: Float[np.ndarray, "lines most"],
+    wanted: Marks,
+    noise: Noise,
+    shape: StripeShape,
+) -> Centres:
+    line, which = np.nonzero(wanted)
+    seen = ridges.lines.binned(shape.binning)
+    start = seen.from_image(ridges.positions[line, which])
+    averaged = noise.averaged(shape.binning)
+    position, sigma, height, _, skirt = fit_ridges(seen, line, start, noise=averaged, shape=shape).T
+    fits = np.isfinite(position) & _is_credible(ridges, line, which, height, averaged, shape)
+    spread = seen.stretch * np.hypot(shape.misfit * sigma, shape.floor)
+    full = seen.as_full_frame(position)
+    signal = np.clip(height * (1 + skirt), 0.0, noise.white)
+    centres = Centres(ridges.lines, line, full, spread, signal, posterior[line, which])[fits]
+    return doubt_ends(centres, width=seen.stretch * shape.width)
 
 
 def doubt_ends(centres: Centres, *, width: float) -> Centres:

@@ -72,7 +72,7 @@ def learn_glow(
     parts = []
     for row in sorted({frame.first_row for frame in frames}):
         alike = [
-            (ScanLines.of(frame, axis, binning=1, white=noise.white), stripe)
+            (ScanLines.of(frame, axis, noise=noise), stripe)
             for frame, stripe in zip(frames, stripes, strict=True)
             if frame.first_row == row
         ]
@@ -99,7 +99,7 @@ def _average(
     place, block = np.nonzero(np.isfinite(before).sum(axis=0) >= _FEWEST)
     level, number = _mean_within(before[:, place, block], 0, noise)
     # Twice that of as many pixels: the lens has smeared their noise, or their snow.
-    variance = np.maximum(noise.fixed + noise.gain * level, noise.least) * 2.0 / _BLOCK / number
+    variance = noise.variance(level) * 2.0 / _BLOCK / number
     along = lines.as_full_frame(_EVERY * place.astype(float))
     pixels = lines.join(_BLOCK * block + 0.5 * (_BLOCK - 1), along)
     return Glow(pixels, block, level, variance)
@@ -135,7 +135,7 @@ def _mean_within(
         empty = np.zeros(np.delete(values.shape, axis))
         return empty, empty
     middle = np.nanmedian(values, axis=axis, keepdims=True)
-    variance = np.maximum(noise.fixed + noise.gain * middle, noise.least)
+    variance = noise.variance(middle)
     keep = np.abs(values - middle) < np.maximum(3.0 * np.sqrt(variance), 1.5)
     number = np.maximum(keep.sum(axis=axis), 1)
     return np.where(keep, values, 0.0).sum(axis=axis) / number, number.astype(float)

@@ -9,7 +9,8 @@ from jaxtyping import Float
 from .._kernels.chain import follow_chain
 from ..errors import InputError
 from .branches import go_on_beside
-from .ridges import Ridges, find_runs
+from .clutter import Rates, weigh_heights
+from .ridges import Marks, Ridges, find_runs
 
 _STEPS = np.array([0.25, 1.2, 0.80, 0.19, 0.35])
 """Scales of a surface's small and larger steps [px a line], their shares, and the scale of steps in
@@ -34,12 +35,12 @@ Posterior = Float[np.ndarray, "lines most"]
 Evidence = Float[np.ndarray, "lines most"]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Markov:
     """The chain's settings."""
 
-    clutter: float
-    """Ridges of snow and glow in a pixel and an e-fold of height."""
+    rates: Rates
+    """Ridges of snow and glow in a pixel and an e-fold of height; see `weigh_heights`."""
     birth: float
     """Probability that a stripe begins at a scan line."""
     death: float
@@ -47,10 +48,9 @@ class Markov:
 
     def __post_init__(self) -> None:
         """Refuse what are no probabilities."""
-        if not (self.clutter > 0 and 0 < self.birth < 1 and 0 < self.death < 1):
+        if not (0 < self.birth < 1 and 0 < self.death < 1):
             raise InputError(
-                "Clutter must be above 0, birth and death must lie between 0 and 1, got "
-                f"{self.clutter:g}, {self.birth:g} and {self.death:g}."
+                f"Birth and death must lie between 0 and 1, got {self.birth:g} and {self.death:g}."
             )
 
     def follow(self, ridges: Ridges, said: Evidence | None = None) -> Posterior:
@@ -63,7 +63,7 @@ class Markov:
         ratio = self._weigh(ridges, said)
         first = self._chain(ridges, ratio)
         clear = ridges.exist & (ridges.heights > _CLEAR)
-        free = clear & ~ridges.are_within(first > 0.5, float(ridges.reach))
+        free = clear & ~ridges.are_within(first > 0.5, ridges.reach)
         if not free.any():
             return first
         second = self._chain(ridges, np.where(free, ratio, 0.0))
@@ -73,17 +73,19 @@ class Markov:
         """Give the posterior by what this frame alone says, without second branches."""
         return self._chain(ridges, self._weigh(ridges, None))
 
+    def follow_some(self, ridges: Ridges, which: Marks) -> Posterior:
+        """Compute the posterior as if only some ridges were there, without second branches."""
+        return self._chain(ridges, np.where(which, self._weigh(ridges, None), 0.0))
+
     def _weigh(self, ridges: Ridges, said: Evidence | None) -> Evidence:
         """Give the likelihood ratio of each ridge against noise and clutter."""
-        height = ridges.heights
-        # Local maxima of white noise through the filter, by their height (Rice 1945).
-        noise = 0.55 * height**2 * np.exp(-0.5 * height**2)
+        like = weigh_heights(ridges.heights, self.rates)
         other = 0.0 if said is None else np.minimum(said, 20.0)
-        return np.where(ridges.exist, np.exp(other) / (noise + self.clutter), 0.0)
+        return np.where(ridges.exist, np.exp(other) * like, 0.0)
 
     def _chain(self, ridges: Ridges, ratio: Evidence) -> Posterior:
         length = len(ridges.lines.levels)
-        own = ridges.positions, ridges.heights, ridges.counts
+        own = ridges.positions, ridges.heights, ridges.counts, ridges.grains
         return follow_chain(*own, ratio, length, self.birth, self.death, _MISS, _STEPS)
 
 

@@ -1,6 +1,7 @@
-"""A filter for ridges of one width, blind to what slopes or bends beneath them."""
+"""Filters for ridges of known widths, blind to what slopes or bends beneath them."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,47 +9,80 @@ from jaxtyping import Float32
 
 from .._kernels.matched_filter import score_pixels
 from ..types.arrays import Ratios
-from ..types.background import Noise
+from ..types.background import Noise, StripeShape
 from .scan_lines import ScanLines
 
 
 @dataclass(frozen=True, eq=False)
 class MatchedFilter:
-    """The filter, and the noise by which its answer is divided."""
+    """A filter for one width, and the noise by which its answer is divided."""
 
     noise: Noise
-    """Of a pixel."""
+    """Of its answer, by the level around it."""
     template: Ratios
+    width: float
+    """1σ of the stripe [px after averaging]."""
+    binning: int = 1
+    """Pixels that are averaged along a scan line before."""
 
     @classmethod
-    def of(cls, width: float, noise: Noise) -> "MatchedFilter":
-        """Make the filter of a width: a Gaussian without its part in 1, x and x², of norm 1."""
+    def of(cls, width: float, noise: Noise, binning: int = 1) -> "MatchedFilter":
+        """Make the filter of a width: a Gaussian without its part in 1, x and x², of norm 1.
+
+        Args:
+            width: 1σ of the stripe [px after averaging].
+            noise: Of an averaged pixel.
+            binning: Pixels that are averaged.
+        """
         half = max(5, math.ceil(4 * width) + 2)
         x = np.arange(-half, half + 1.0)
         bell = np.exp(-0.5 * (x / width) ** 2)
         smooth = np.stack([x**0, x, x**2], axis=1)
         bell -= smooth @ np.linalg.lstsq(smooth, bell, rcond=None)[0]
-        return cls(noise, (bell / np.linalg.norm(bell)).astype(np.float32))
+        return cls(noise, (bell / np.linalg.norm(bell)).astype(np.float32), width, binning)
 
     @property
     def reach(self) -> int:
-        """Pixels from a ridge up to which it has side lobes."""
+        """Averaged pixels from a ridge up to which it has side lobes."""
         return len(self.template) // 2 + 4
 
+    def respond(self, lines: ScanLines) -> Float32[np.ndarray, "length lines"]:
+        """Score each averaged pixel, in standard deviations of the noise."""
+        seen = lines.binned(self.binning)
+        return score_pixels(seen.signal, seen.levels, self.template, self.noise.as_law())
+
+
+@dataclass(frozen=True, eq=False)
+class FilterBank:
+    """One filter for each width that the recording's stripe has."""
+
+    filters: tuple[MatchedFilter, ...]
+    noise: Noise
+    """Of a pixel."""
+
+    @classmethod
+    def of(cls, shapes: Sequence[StripeShape], noise: Noise) -> "FilterBank":
+        """Make a filter for each shape, the first one's first."""
+        return cls(
+            tuple(
+                MatchedFilter.of(s.width, s.clutter or noise.averaged(s.binning), s.binning)
+                for s in shapes
+            ),
+            noise,
+        )
+
     def score(self, lines: ScanLines) -> "Scored":
-        """Score each pixel of a frame."""
-        noise = self.noise
-        scores = score_pixels(lines.levels, self.template, noise.fixed, noise.gain, noise.least)
-        return Scored(lines, scores)
+        """Score each pixel of a frame by each filter."""
+        return Scored(lines, tuple(each.respond(lines) for each in self.filters))
 
 
 @dataclass(frozen=True, eq=False)
 class Scored:
-    """How much each pixel of a frame looks like the middle of a stripe."""
+    """How much each pixel of a frame looks like the middle of a stripe, by each filter."""
 
     lines: ScanLines
-    scores: Float32[np.ndarray, "length lines"]
-    """In standard deviations of the noise."""
+    scores: tuple[Float32[np.ndarray, "_ lines"], ...]
+    """In standard deviations of the noise; each filter has its own averaged pixels."""
 
     @property
     def index(self) -> int:

@@ -7,7 +7,7 @@ frames ─▶ scores ─▶ ridges ─▶ posteriors ─▶ centres ─▶ joine
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import ClassVar, final
+from typing import ClassVar, TypeVar, final
 
 from ..errors import InputError
 from ..types.background import Background, Noise, StripeShape
@@ -19,15 +19,24 @@ from .assemble import assemble_stripe
 from .attenuation import estimate_attenuation, nearer_side
 from .base import AbstractExtractor
 from .centres import Centres, doubt_wide, find_centres, join_frames
+from .clutter import Rates, learn_rates, usual_rates
+from .fixed import learn_fixed_patterns
 from .glow import clearance, learn_glow
 from .markov import Markov, ask_frames
-from .matched_filter import MatchedFilter
+from .matched_filter import FilterBank
 from .neighbours import with_neighbours
 from .noise import learn_levels, learn_noise
 from .remarks import find_remarks
 from .ridges import find_frame_ridges
+from .rim import add_rim
+from .row_noise import learn_row_noise
 from .scan_lines import ScanLines
-from .stripe_shape import learn_stripe_shape
+from .stripe_shape import learn_stripe_shapes
+
+_FEW = 16
+"""Frames that suffice to learn shapes and rates; what is fixed to the picture needs more."""
+
+Item = TypeVar("Item")
 
 
 @final
@@ -46,8 +55,6 @@ class Murk(AbstractExtractor):
     """Probability from which a point is given, at least a half."""
     min_score: float = 2.5
     """Standard deviations of the noise from which a ridge is looked at."""
-    clutter: float = 0.02
-    """Ridges of snow and glow that are expected in a pixel and an e-fold of height."""
     birth: float = 3e-5
     """Probability that a stripe begins at a scan line."""
     death: float = 3e-3
@@ -60,19 +67,28 @@ class Murk(AbstractExtractor):
                 "Murk needs min_posterior from 0.5 up to 1 and min_score ≥ 1, got "
                 f"{self.min_posterior:g} and {self.min_score:g}."
             )
-        self._markov()
+        self._markov(usual_rates())
 
     def learn(self, frames: Sequence[Frame], rig: Rig, *, laser: int = 0) -> Background:
         """Learn the noise of each grey level, the stripe's shape, and how murky the water is."""
         axis = rig.laser(laser).axis
         levels = learn_levels([f.image if axis == "y" else f.image.T for f in frames])
-        shape = learn_stripe_shape(
-            frames, axis, levels, markov=self._markov(), min_score=self.min_score
-        )
-        background = Background(learn_noise(frames).noise, levels, shape)
+        if axis == "y":
+            levels = replace(levels, rows=learn_row_noise([f.image for f in frames], levels))
+        markov = self._markov(usual_rates())
+        rim = add_rim(frames, levels, ())
+        look = [ScanLines.of(frame, axis, noise=levels, fixed=rim) for frame in frames]
+        learn = partial(learn_stripe_shapes, noise=levels, markov=markov, min_score=self.min_score)
+        shapes = learn(_thin(look))
+        stays = learn_fixed_patterns(look, FilterBank.of(shapes, levels), markov)
+        fixed = add_rim(frames, levels, stays)
+        look = [ScanLines.of(f, axis, noise=levels, fixed=fixed) for f in _thin(frames)]
+        shapes = learn(look) if any(one.levels.any() for one in fixed) else shapes
+        rates = self._learn_rates(look, shapes, levels)
+        background = Background(learn_noise(frames).noise, levels, shapes, rates=rates, fixed=fixed)
         alone = (self.extract([frame], rig, background, laser=laser) for frame in frames)
         stripes = [next(found) for found in alone]
-        near, clear = nearer_side(rig, laser=laser), clearance(shape, frames[0])
+        near, clear = nearer_side(rig, laser=laser), clearance(shapes[0], frames[0])
         remarks = find_remarks(frames, stripes, axis, levels, near=near, clear=clear)
         background = replace(background, remarks=remarks)
         if rig.water is None:
@@ -84,32 +100,50 @@ class Murk(AbstractExtractor):
         self, frames: Iterable[Frame], rig: Rig, background: Background, *, laser: int = 0
     ) -> Iterator[Stripe]:
         """Find the stripe in each frame; see `AbstractExtractor.extract`."""
-        levels, shape = background.levels, background.stripe
-        if levels is None or shape is None:
+        if background.levels is None or not background.shapes:
             raise InputError("Murk needs what it has learnt itself: give what its `learn` gave.")
-        axis = rig.laser(laser).axis
-        centres = self._centres(frames, axis, levels, shape)
+        centres = self._centres(frames, rig.laser(laser).axis, background.levels, background)
         for near in with_neighbours(centres, 2):
             joined = doubt_wide(join_frames(near))
             yield _as_stripe(joined[joined.posterior >= self.min_posterior], laser)
 
     def _centres(
-        self, frames: Iterable[Frame], axis: Axis, levels: Noise, shape: StripeShape
+        self, frames: Iterable[Frame], axis: Axis, noise: Noise, background: Background
     ) -> Iterator[Centres]:
-        markov, noise = self._markov(), levels.averaged(shape.binning)
-        matched = MatchedFilter.of(shape.width, noise)
-        look = partial(ScanLines.of, axis=axis, binning=shape.binning, white=levels.white)
-        scored = (matched.score(look(frame)) for frame in frames)
+        markov, shapes = self._markov(background.rates), background.shapes
+        bank = FilterBank.of(shapes, noise)
+        look = partial(ScanLines.of, axis=axis, noise=noise, fixed=background.fixed)
+        scored = (bank.score(look(frame)) for frame in frames)
         ridges = (
-            find_frame_ridges(near, least=self.min_score, reach=matched.reach)
+            find_frame_ridges(near, bank, least=self.min_score)
             for near in with_neighbours(scored, 1)
         )
         for near in with_neighbours(ridges, 4):
             posterior = markov.follow(near[0], ask_frames(near, markov))
-            yield find_centres(near[0], posterior, noise=noise, shape=shape)
+            yield find_centres(near[0], posterior, noise=noise, shapes=shapes)
 
-    def _markov(self) -> Markov:
-        return Markov(self.clutter, self.birth, self.death)
+    def _learn_rates(
+        self, look: Sequence[ScanLines], shapes: tuple[StripeShape, ...], noise: Noise
+    ) -> Rates:
+        """Count the clutter of each height, twice: what is a stripe depends on it."""
+        bank = FilterBank.of(shapes, noise)
+        ridges = [
+            find_frame_ridges({0: bank.score(lines)}, bank, least=self.min_score) for lines in look
+        ]
+        rates = usual_rates()
+        for _ in range(2):
+            markov = self._markov(rates)
+            rates = learn_rates(ridges, [markov.follow(one) for one in ridges])
+        return rates
+
+    def _markov(self, rates: Rates) -> Markov:
+        return Markov(rates, self.birth, self.death)
+
+
+def _thin(items: Sequence[Item]) -> Sequence[Item]:
+    """Take some of the frames that were given, both kinds of fields among them."""
+    step = max(len(items) // _FEW, 1)
+    return [item for number, item in enumerate(items) if number // 2 % step == 0]
 
 
 def _as_stripe(centres: Centres, laser: int) -> Stripe:

@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Float, Shaped
+from scipy.optimize import nnls
 
 from ..types.arrays import Image, Scalars
 from ..types.background import Background, Noise
@@ -179,22 +180,46 @@ def _winsorised(values: Scalars) -> float:
 
 def _average(bins: Bins) -> float:
     """Give the variance over all levels; 0 where nothing is known."""
-    return float(np.average(bins[:, 1], weights=bins[:, 2])) if len(bins) else 0.0
+    return float(np.average(bins[:, 1], weights=bins[:, 2])) if bins[:, 2].any() else 0.0
 
 
 def _fit_law(bins: Bins) -> tuple[float, float]:
     """Fit variance = fixed + gain · level under most bins: structure only adds to it."""
-    levels, variances, counts = bins.T
+    levels = bins[:, 0]
     if len(levels) < 3 or levels.max() <= 1.5 * levels.min() + 2.0:
         return _average(bins), 0.0
-    columns = np.stack([np.ones_like(levels), levels], axis=1)
+    law = _fit_under(bins, np.stack([np.ones_like(levels), levels], axis=1))
+    if law[1] <= 0:
+        return _average(bins), 0.0
+    return float(law[0]), float(law[1])
+
+
+def _fit_under(bins: Bins, columns: Float[np.ndarray, "bins terms"]) -> Scalars:
+    """Fit a sum of terms to variances, so that bins that lie above count little."""
+    _, variances, counts = bins.T
     trust = np.sqrt(counts) / np.maximum(variances, 0.05)
     weights = trust
-    law = np.zeros(2)
+    law = np.zeros(columns.shape[1])
     for _ in range(20):
         law = np.linalg.lstsq(columns * weights[:, None], variances * weights, rcond=None)[0]
         above = (variances - columns @ law) / np.maximum(columns @ law, 0.05)
         weights = trust / np.sqrt(1 + (np.maximum(above, 0.0) / 0.05) ** 2)
-    if law[1] <= 0:
-        return _average(bins), 0.0
-    return float(law[0]), float(law[1])
+    return law
+
+
+def fit_law(bins: Bins, least: Noise) -> Noise:
+    """Fit fixed + gain · level + relative · level² to variances, none below a known law.
+
+    Args:
+        bins: Level, variance and number of values of each bin.
+        least: The law that variances cannot be below.
+    """
+    if len(bins) < 3 or bins[:, 0].max() <= 1.5 * bins[:, 0].min() + 2.0:
+        terms = np.array([_average(bins), 0.0, 0.0])
+    else:
+        levels, variances, counts = bins.T
+        columns = np.stack([np.ones_like(levels), levels, levels**2], axis=1)
+        weights = np.sqrt(counts) / np.maximum(variances, 0.05)
+        terms = nnls(columns * weights[:, None], variances * weights)[0]
+    fixed, gain, relative = np.maximum(terms, (least.fixed, least.gain, least.relative))
+    return replace(least, fixed=float(fixed), gain=float(gain), relative=float(relative))

@@ -77,7 +77,7 @@ def _about_light(frames: Sequence[Frame], noise: Noise) -> list[str]:
     remarks = []
     middle = np.array([float(np.median(frame.image)) for frame in frames])
     bright = np.array([float(np.quantile(frame.image, 0.9999)) for frame in frames])
-    spread = np.sqrt(np.maximum(noise.fixed + noise.gain * middle, noise.least))
+    spread = np.sqrt(noise.variance(middle))
     black = int(np.sum(bright <= middle + _DARK * spread + 2.0))
     if black:
         remarks.append(f"{black} of the {len(frames)} frames looked at first are black or even.")
@@ -102,7 +102,7 @@ def _gather_glow(
     levels = []
     for frame, stripe in zip(frames, stripes, strict=True):
         if _is_like(frame, frames):
-            lines = ScanLines.of(frame, axis, binning=1, white=noise.white)
+            lines = ScanLines.of(frame, axis, noise=noise)
             behind = is_behind(lines, stripe, near, clear)
             levels.append(np.where(behind, np.nan, average_blocks(lines, noise)).ravel())
     stack = np.stack(levels)

@@ -5,16 +5,31 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int8
 
 from .._kernels.matched_filter import add_neighbour
-from .._kernels.ridges import compare_ridges, find_blurred_ends, find_ridges
+from .._kernels.ridges import (
+    compare_ridges,
+    drop_hidden,
+    find_blurred_ends,
+    find_ridges,
+    merge_ridges,
+    replace_near,
+)
 from ..types.arrays import Indices, Mask, Scalars
-from .matched_filter import Scored
+from .matched_filter import FilterBank, Scored
+from .plateaus import list_plateaus
 from .scan_lines import ScanLines
 
-MOST = 6
-"""Ridges a scan line; the highest are kept."""
+MOST = 16
+"""Ridges a scan line; the highest are kept. With six, text and bubbles crowd the stripe out."""
+_NARROW = 0.4
+"""Share of a wider filter's answer from which the narrower one tells where the stripe is. A stripe
+answers a filter of half its width with 0.27 of what its own gives and less; the skirt of a narrow
+one, scattered by murk, answers wide filters up to twice as much as the core its own."""
+_RIM = 1.5
+"""Widths from the picture's edge within which nothing shows on one side: no stripe is told from the
+picture's own rim there."""
 _BOUND = 2.0
 """Standard deviations by which a neighbouring frame may exceed a frame's own score, so that snow
 of that frame is none of this one's."""
@@ -29,6 +44,11 @@ _LONG, _STEADY = 24, 3.0
 _MUCH = 0.1
 """Share of the scan lines that long stripes must cover to tell anything."""
 
+PLATEAU = -1
+"""Shape of a ridge that is a plateau of white."""
+_RIM_OF_WHITE = 4.0
+"""Pixels beside a plateau within which its flanks answer the filters."""
+
 Marks = Bool[np.ndarray, "lines most"]
 
 
@@ -38,13 +58,17 @@ class Ridges:
 
     lines: ScanLines
     positions: Float[np.ndarray, "lines most"]
-    """Along the scan line [px of `lines`]."""
+    """Along the scan line [px of the frame's image]."""
     heights: Float[np.ndarray, "lines most"]
     """Score [standard deviations]."""
     counts: Indices
     """Ridges that a line has; what is beyond has no meaning."""
-    reach: int
-    """Pixels from a ridge up to which it has side lobes."""
+    shapes: Int8[np.ndarray, "lines most"]
+    """Number of the filter that answers best."""
+    grains: Float[np.ndarray, "lines most"]
+    """Pixels that this filter averages: positions are no finer."""
+    reach: float
+    """Pixels from a ridge of the commonest width up to which it has side lobes."""
 
     @property
     def index(self) -> int:
@@ -59,7 +83,7 @@ class Ridges:
     def are_also_in(self, other: "Ridges", *, near: float, share: float = 0.33) -> Marks:
         """Tell which are in another frame, too, within `near` pixels and at a `share` of height."""
         shift, _ = self.lines.offset(other.lines)
-        own = self.positions, self.heights, self.counts
+        own = self.positions, self.heights, self.counts, self.grains
         theirs = other.positions, other.heights, other.counts
         return compare_ridges(*own, *theirs, shift, near, share)
 
@@ -83,45 +107,93 @@ class Ridges:
         return float(self.are_also_in(other, near=1.5)[long, 0].mean())
 
 
-def find_runs(on: Mask, positions: Scalars) -> Mask:
+def find_runs(on: Mask, positions: Scalars, *, least: float = _LONG) -> Mask:
     """Tell which scan lines lie in a long run of ridges that follow one another steadily.
 
     Args:
         on: Scan lines that have a ridge.
         positions: Where it is [px].
+        least: Scan lines of the shortest long run.
     """
     breaks = ~on[1:] | ~on[:-1] | (np.abs(np.diff(positions)) > _STEADY)
     ends = np.flatnonzero(np.r_[True, breaks, True])
-    return on & np.repeat(np.diff(ends) >= _LONG, np.diff(ends))
+    return on & np.repeat(np.diff(ends) >= least, np.diff(ends))
 
 
-def find_frame_ridges(near: Mapping[int, Scored], *, least: float, reach: int) -> Ridges:
+def find_frame_ridges(near: Mapping[int, Scored], bank: FilterBank, *, least: float) -> Ridges:
     """Find the ridges of a frame, helped by those before and after it.
 
     A stripe that moves by less than its width from frame to frame adds up to a higher score; what
-    is in one frame alone keeps its own.
+    is in one frame alone keeps its own. Of what answers several filters, the narrowest counts that
+    answers about as well as any.
 
     Args:
         near: The frame, 0, and those one before and after it, as far as there are any.
+        bank: The filters.
         least: Score that a ridge must reach.
-        reach: Pixels from a ridge up to which it has side lobes.
 
     References:
         Curless and Levoy, Better optical triangulation through spacetime analysis, ICCV 1995, for
-        the stripe as a ridge in time as well.
+        the stripe as a ridge in time as well. Lindeberg, Edge detection and ridge detection with
+        automatic scale selection, IJCV 30(2), 1998, for ridges of several widths.
     """
     own = near[0]
-    total = own.scores.copy()
-    for other in (other for distance, other in near.items() if distance):
-        down, across = _half_rows(own.lines, other.lines)
-        add_neighbour(own.scores, other.scores, down, across, _BOUND, _HALF_ROW, total)
-    total *= np.float32(1 / math.sqrt(len(near)))
-    scores = np.maximum(total, own.scores)
-    positions, heights, counts = find_ridges(scores, least, MOST, reach, _LOBE)
-    return Ridges(own.lines, positions, heights, counts, reach)
+    parts = [_find_one_width(near, bank, number, least) for number in range(len(bank.filters))]
+    if len(parts) == 1:
+        positions, heights, counts = parts[0]
+        shapes = np.zeros(positions.shape, np.int8)
+    else:
+        widths = np.array([each.width * each.binning for each in bank.filters])
+        stacked = [np.stack(column) for column in zip(*parts, strict=True)]
+        positions, heights, counts, shapes = merge_ridges(*stacked, widths, _NARROW)
+    _add_plateaus(own.lines, bank, positions, heights, counts, shapes)
+    if own.lines.hidden is not None:
+        drop_hidden(positions, heights, counts, shapes, own.lines.hidden)
+    grains = np.array([*(float(each.binning) for each in bank.filters), 1.0])[shapes]
+    reach = float(bank.filters[0].reach * bank.filters[0].binning)
+    return Ridges(own.lines, positions, heights, counts, shapes, grains, reach)
 
 
-def _half_rows(own: ScanLines, other: ScanLines) -> tuple[int, int]:
-    """Give how far back a field's second row around one of the other field's lies, and line."""
+def _add_plateaus(
+    lines: ScanLines,
+    bank: FilterBank,
+    positions: Float[np.ndarray, "lines most"],
+    heights: Float[np.ndarray, "lines most"],
+    counts: Indices,
+    shapes: Int8[np.ndarray, "lines most"],
+) -> None:
+    """Put white plateaus among the ridges, with a shape of their own: what is near is their rim."""
+    line, found = list_plateaus(lines, bank.noise)
+    if len(line) == 0:
+        return
+    middle, _, rise, width = found.T
+    noise = bank.filters[0].noise.variance(bank.noise.white - rise)
+    tops = rise * np.sqrt(width / noise)
+    reaches = 0.5 * width + np.maximum(0.5 * width, _RIM_OF_WHITE)
+    replace_near(positions, heights, counts, shapes, line, middle, tops, reaches, PLATEAU)
+
+
+def _find_one_width(
+    near: Mapping[int, Scored], bank: FilterBank, number: int, least: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Find what answers one filter: positions [px of the frame's image], heights and counts."""
+    matched = bank.filters[number]
+    own = near[0]
+    scores = own.scores[number]
+    if len(near) > 1:
+        total = scores.copy()
+        for other in (other for distance, other in near.items() if distance):
+            down, across = _half_rows(own.lines, other.lines, matched.binning)
+            add_neighbour(scores, other.scores[number], down, across, _BOUND, _HALF_ROW, total)
+        total *= np.float32(1 / math.sqrt(len(near)))
+        scores = np.maximum(total, scores)
+    margin = min(_RIM * matched.width, (len(scores) - 3) / 2)
+    positions, heights, counts = find_ridges(scores, least, MOST, matched.reach, _LOBE, margin)
+    return matched.binning * positions + 0.5 * (matched.binning - 1), heights, counts
+
+
+def _half_rows(own: ScanLines, other: ScanLines, binning: int) -> tuple[int, int]:
+    """Compute how far a field's second row around one of the other's lies back, and which line."""
     down, across = own.offset(other)
-    return round(2 * down), round(2 * across)
+    # Averaged pixels of both fields cover nearly the same place.
+    return (round(2 * down) if binning == 1 else 0), round(2 * across)

@@ -1,13 +1,16 @@
 """A frame seen along its scan lines: each is a column, whichever way the stripe runs."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Shaped
+from jaxtyping import Bool, Shaped
 
 from ..types.arrays import Indices, Pixels, Scalars
+from ..types.background import FixedPattern, Noise
 from ..types.frame import Frame
 from ..types.laser import Axis
+from .row_noise import without_rows
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,26 +21,60 @@ class ScanLines:
     axis: Axis
     """The camera's axis along which the laser sits; for y, scan lines are image columns."""
     levels: Shaped[np.ndarray, "length lines"]
-    binning: int
+    """Grey levels as recorded."""
+    signal: Shaped[np.ndarray, "length lines"]
+    """The same without what is fixed to the picture."""
+    white: float
+    """Level from which a pixel is saturated."""
+    hidden: Bool[np.ndarray, "_ lines"] | None = None
+    """Pixels of the frame's image that show nothing of the scene."""
+    binning: int = 1
     """Pixels of the image in one of these."""
 
     @classmethod
-    def of(cls, frame: Frame, axis: Axis, *, binning: int, white: float) -> "ScanLines":
+    def of(
+        cls, frame: Frame, axis: Axis, *, noise: Noise, fixed: Sequence[FixedPattern] = ()
+    ) -> "ScanLines":
         """Look at a frame along its scan lines.
 
         Args:
             frame: The frame.
             axis: The camera's axis along which the laser sits.
-            binning: Pixels to average; what is left over at the end of a line is left out.
-            white: Level from which a pixel is saturated; so is an average that has one.
+            noise: Of a pixel; its rows' noise is taken away where it lies across scan lines.
+            fixed: What is fixed to the picture, of all kinds of fields.
         """
-        levels = np.ascontiguousarray(frame.image if axis == "y" else frame.image.T)
-        if binning > 1:
-            length = len(levels) // binning
-            groups = levels[: length * binning].reshape(length, binning, -1)
-            mean = groups.mean(axis=1, dtype=np.float32)
-            levels = np.where((groups >= white).any(axis=1), np.float32(white), mean)
-        return cls(frame, axis, levels, binning)
+        image = frame.image if axis == "y" else frame.image.T
+        levels = signal = np.ascontiguousarray(image)
+        hidden = None
+        for one in fixed:
+            if one.first_row == frame.first_row and one.levels.shape == frame.image.shape:
+                own = one if axis == "y" else one.transposed
+                signal, hidden = levels - own.levels, own.overlay
+        if noise.rows and axis == "y":
+            signal = without_rows(signal, noise, noise.rows)
+        return cls(frame, axis, levels, signal, noise.white, hidden)
+
+    def binned(self, binning: int) -> "ScanLines":
+        """Average pixels along scan lines; what is left over at their ends is left out.
+
+        An average that has a saturated pixel is saturated.
+        """
+        if binning == self.binning:
+            return self
+        length = len(self.levels) // binning
+        groups, signal = (
+            each[: length * binning].reshape(length, binning, -1)
+            for each in (self.levels, self.signal)
+        )
+        is_white = (groups >= self.white).any(axis=1)
+        levels = np.where(is_white, np.float32(self.white), groups.mean(axis=1, dtype=np.float32))
+        mean = signal.mean(axis=1, dtype=np.float32) if self.has_fixed else levels
+        return replace(self, levels=levels, signal=mean, binning=binning)
+
+    @property
+    def has_fixed(self) -> bool:
+        """Tell whether something fixed to the picture has been taken away."""
+        return self.signal is not self.levels
 
     @property
     def index(self) -> int:
@@ -71,6 +108,10 @@ class ScanLines:
         """Give positions along scan lines in pixels of the full frame."""
         along = self.binning * positions + 0.5 * (self.binning - 1)
         return self.frame.as_full_rows(along) if self.axis == "y" else along
+
+    def from_image(self, positions: Scalars) -> Scalars:
+        """Compute positions in these pixels from those in the frame's image."""
+        return (positions - 0.5 * (self.binning - 1)) / self.binning
 
     def from_full_frame(self, positions: Scalars) -> Scalars:
         """Give positions along scan lines, of the full frame, in pixels of the frame's image."""

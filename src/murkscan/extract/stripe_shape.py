@@ -9,12 +9,11 @@ from jaxtyping import Float, Shaped
 
 from ..types.arrays import Indices, Scalars
 from ..types.background import Noise, StripeShape
-from ..types.frame import Frame
-from ..types.laser import Axis
 from .centres import Tightness, fit_ridges
+from .clutter import learn_response_law
 from .markov import Markov
-from .matched_filter import MatchedFilter
-from .ridges import Ridges, find_frame_ridges
+from .matched_filter import FilterBank, MatchedFilter
+from .ridges import Ridges, find_frame_ridges, find_runs
 from .scan_lines import ScanLines
 
 _BINNINGS = (1, 2, 4, 8, 16, 32)
@@ -28,6 +27,12 @@ _WINDOW = 10
 """Pixels on both sides of a stripe within which it sinks to half its height."""
 _WIDEST, _WANTED = 2.2, 1.1
 """Width above which more pixels are averaged, and the one that is wanted then [px]."""
+_NARROWEST, _WIDEST_BAND = 0.4, 24.0
+"""1σ of the narrowest stripe that pixels can show, and of a white band of 60 px [px]."""
+_LONGER = 10.0
+"""Times that a stripe is longer than 1σ of its width, at least, to be told from a round blur."""
+_CLEAR, _FEW, _SHARE = 8.0, 100, 0.01
+"""Score from which a ridge tells of another width, and how many, and what share, must tell."""
 _SURE = 0.9
 """Posterior from which a ridge is learnt from."""
 _APART = 3
@@ -42,32 +47,40 @@ _ENOUGH = 100
 """Centres from which the shape is learnt, and from which three times as many its scatter."""
 
 
-def learn_stripe_shape(
-    frames: Sequence[Frame], axis: Axis, noise: Noise, *, markov: Markov, min_score: float
-) -> StripeShape:
-    """Learn the core's width, the skirt, and how much more than noise the centres scatter.
+def learn_stripe_shapes(
+    look: Sequence[ScanLines], noise: Noise, *, markov: Markov, min_score: float
+) -> tuple[StripeShape, ...]:
+    """Learn the core's widths, the skirt, and how much more than noise the centres scatter.
 
     Args:
-        frames: Frames spread over the recording.
-        axis: The camera's axis along which the laser sits.
+        look: Frames spread over the recording, along their scan lines.
         noise: Of a pixel.
         markov: The chain that tells the stripe from the rest.
         min_score: Score from which a ridge is looked at.
 
     Returns:
-        The shape; a narrow one where the frames show no stripe.
+        One shape for each width that the recording has, an octave apart, the commonest first; a
+        narrow one where the frames show no stripe.
     """
-    learner = _Learner(axis, noise, markov, min_score)
-    width = learner.measure_width(frames)
-    shape = learner.learn(frames, _begin(width))
+    learner = _Learner(look, noise, markov, min_score)
+    width = learner.measure_width()
+    shape = learner.learn((_begin(width),))[0]
     # In faint stripes noise widens what is half as high: the fit knows better.
     fitted = shape.binning * shape.width
-    return shape if _binning(fitted) == shape.binning else learner.learn(frames, _begin(fitted))
+    if _binning(fitted) != shape.binning:
+        shape = learner.learn((_begin(fitted),))[0]
+    others = learner.find_others(shape)
+    return learner.learn((shape, *others)) if others else (shape,)
 
 
 def _begin(width: float) -> StripeShape:
-    """Give a first shape for a stripe of a width [px]."""
-    return StripeShape(width / _binning(width), 0.1, _binning(width), 1.0, 0.0)
+    """Make a first shape for a stripe of a width [px]."""
+    return _begin_at(width / _binning(width), _binning(width))
+
+
+def _begin_at(width: float, binning: int) -> StripeShape:
+    """Make a first shape of a width [px after averaging so many]."""
+    return StripeShape(width, 0.1, binning, 1.0, 0.0)
 
 
 def _binning(width: float) -> int:
@@ -79,68 +92,104 @@ def _binning(width: float) -> int:
 class _Learner:
     """How the stripe is looked for in single frames."""
 
-    axis: Axis
+    look: Sequence[ScanLines]
     noise: Noise
     markov: Markov
     min_score: float
 
-    def measure_width(self, frames: Sequence[Frame]) -> float:
+    def measure_width(self) -> float:
         """Measure the width at half height, under the least averaging that shows much stripe [px].
 
         Gives 1σ of a Gaussian that is as wide.
         """
-        few = frames[:: max(len(frames) // 6, 1)]
+        few = self.look[:: max(len(self.look) // 6, 1)]
         counts, widths = [], []
-        length = frames[0].image.shape["yx".index(self.axis)]
+        length = len(self.look[0].levels)
         binnings = [binning for binning in _BINNINGS if 3 * binning <= length] or [1]
         for binning in binnings:
-            matched = MatchedFilter.of(_FIRST_WIDTH, self.noise.averaged(binning))
+            bank = FilterBank.of((_begin_at(_FIRST_WIDTH, binning),), self.noise)
             count, measured = 0, [np.zeros(0)]
-            for frame in few:
-                ridges = self._ridges(frame, binning, matched)
-                lines, which = self._sure(ridges, 6.0)
-                middle = np.rint(ridges.positions[lines, which]).astype(int)
-                measured.append(binning * _half_widths(ridges.lines.levels, lines, middle))
-                count += len(np.unique(lines))
+            for lines in few:
+                ridges = self._ridges(lines, bank)
+                line, which = self._sure(ridges, 6.0)
+                seen = ridges.lines.binned(binning)
+                middle = np.rint(seen.from_image(ridges.positions[line, which])).astype(int)
+                measured.append(binning * _half_widths(seen.signal, line, middle))
+                count += len(np.unique(line))
             counts.append(count)
             widths.append(np.concatenate(measured))
         known = widths[int(np.argmax(np.array(counts) >= _FOUND * max(counts)))]
         return float(np.nanmedian(known)) if np.isfinite(known).any() else _FIRST_WIDTH
 
-    def learn(self, frames: Sequence[Frame], shape: StripeShape) -> StripeShape:
-        """Learn the shape, from a first one."""
-        fits = self._fit_all(frames, shape, Tightness(0.5, 0.3))
-        if len(fits) > _ENOUGH:
-            width = _weighted_median(fits.width, fits.trust)
-            skirt = _weighted_median(fits.skirt, fits.trust)
-            shape = replace(shape, width=width, skirt=float(np.clip(skirt, 0.0, 0.5)))
-        misfit, floor = _explain(self._fit_all(frames, shape, Tightness()).bends)
-        return replace(shape, misfit=misfit, floor=floor)
+    def find_others(self, shape: StripeShape) -> list[StripeShape]:
+        """Find out which other widths the stripe has, octaves away from a shape's."""
+        first = shape.width * shape.binning
+        length = len(self.look[0].levels)
+        octaves = [first * 2.0**k for k in range(-3, 6) if k]
+        widths = [w for w in octaves if _NARROWEST <= w <= min(_WIDEST_BAND, length / 12)]
+        shapes = (shape, *(_begin(width) for width in widths))
+        bank = FilterBank.of(shapes, self.noise)
+        counts = np.zeros(len(shapes), int)
+        for lines in self.look[:: max(len(self.look) // 8, 1)]:
+            ridges = self._ridges(lines, bank)
+            line, which = self._sure(ridges, _CLEAR)
+            for number, each in enumerate(shapes):
+                own = ridges.shapes[line, which] == number
+                on, place = np.zeros(lines.num_lines, bool), np.zeros(lines.num_lines)
+                on[line[own]] = True
+                place[line[own]] = ridges.positions[line[own], which[own]]
+                # Snow out of focus is as wide, but no longer than it is wide.
+                least = max(_LONGER * each.width * each.binning, 24.0)
+                counts[number] += find_runs(on, place, least=least).sum()
+        enough = max(_FEW, _SHARE * counts.sum())
+        return [s for s, count in zip(shapes[1:], counts[1:], strict=True) if count >= enough]
 
-    def _fit_all(
-        self, frames: Sequence[Frame], shape: StripeShape, tightness: Tightness
-    ) -> "_Fits":
-        """Fit the sure ridges of all frames."""
+    def learn(self, shapes: tuple[StripeShape, ...]) -> tuple[StripeShape, ...]:
+        """Learn the shapes, from first ones."""
+        shapes = tuple(self._with_clutter(shape) for shape in shapes)
+        learnt = []
+        for fits, shape in zip(self._fit_all(shapes, Tightness(0.5, 0.3)), shapes, strict=True):
+            if len(fits) > _ENOUGH:
+                width = _weighted_median(fits.width, fits.trust)
+                skirt = _weighted_median(fits.skirt, fits.trust)
+                shape = replace(shape, width=width, skirt=float(np.clip(skirt, 0.0, 0.5)))
+            learnt.append(shape)
+        fitted = self._fit_all(tuple(learnt), Tightness())
+        explained = [_explain(fits.bends) for fits in fitted]
+        return tuple(
+            replace(shape, misfit=misfit, floor=floor)
+            for shape, (misfit, floor) in zip(learnt, explained, strict=True)
+        )
+
+    def _with_clutter(self, shape: StripeShape) -> StripeShape:
+        """Learn how strongly a filter of this width answers what is no stripe."""
         noise = self.noise.averaged(shape.binning)
-        matched = MatchedFilter.of(shape.width, noise)
-        parts = []
-        for frame in frames:
-            ridges = self._ridges(frame, shape.binning, matched)
+        matched = MatchedFilter.of(shape.width, noise, shape.binning)
+        return replace(shape, clutter=learn_response_law(self.look, matched))
+
+    def _fit_all(self, shapes: tuple[StripeShape, ...], tightness: Tightness) -> list["_Fits"]:
+        """Fit the sure ridges of all frames; those of each shape by themselves."""
+        bank = FilterBank.of(shapes, self.noise)
+        parts: list[list[_Fits]] = [[] for _ in shapes]
+        for each in self.look:
+            ridges = self._ridges(each, bank)
             lines, which = self._sure(ridges, 0.0)
-            height = ridges.heights[lines, which]
-            found = fit_ridges(
-                ridges.lines, lines, ridges.positions[lines, which],
-                noise=noise, shape=shape, tightness=tightness,
-            )  # fmt: skip
-            parts.append(_Fits.of(lines, found, height))
-        return _Fits.concatenate(parts)
+            for number, shape in enumerate(shapes):
+                own = ridges.shapes[lines, which] == number
+                parts[number].append(self._fit(ridges, lines[own], which[own], shape, tightness))
+        return [_Fits.concatenate(each) for each in parts]
 
-    def _look(self, frame: Frame, binning: int) -> ScanLines:
-        return ScanLines.of(frame, self.axis, binning=binning, white=self.noise.white)
+    def _fit(
+        self, ridges: Ridges, lines: Indices, which: Indices, shape: StripeShape, held: Tightness
+    ) -> "_Fits":
+        seen = ridges.lines.binned(shape.binning)
+        start = seen.from_image(ridges.positions[lines, which])
+        noise = self.noise.averaged(shape.binning)
+        found = fit_ridges(seen, lines, start, noise=noise, shape=shape, tightness=held)
+        return _Fits.of(lines, found, ridges.heights[lines, which])
 
-    def _ridges(self, frame: Frame, binning: int, matched: MatchedFilter) -> Ridges:
-        scored = matched.score(self._look(frame, binning))
-        return find_frame_ridges({0: scored}, least=self.min_score, reach=matched.reach)
+    def _ridges(self, lines: ScanLines, bank: FilterBank) -> Ridges:
+        return find_frame_ridges({0: bank.score(lines)}, bank, least=self.min_score)
 
     def _sure(self, ridges: Ridges, least: float) -> tuple[Indices, Indices]:
         """Give the scan lines and the numbers of ridges that are surely the stripe."""

@@ -18,7 +18,7 @@ from .overlay import choose_overlays, draw_overlays, name_candidates
 from .progress import Progress, silent
 from .stage_runner import run_stage
 
-_SAMPLES = 24
+_SAMPLES = 48
 """Frames that an extractor learns from."""
 
 

@@ -1,6 +1,12 @@
 """What a recording looks like where the stripe is not, and how the stripe stands out of it."""
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Bool, Float32
+
+from .arrays import Scalars
 
 
 @dataclass(frozen=True)
@@ -16,13 +22,31 @@ class Noise:
 
     least: float = 1 / 12 + 0.02
     """Variance that no pixel is below [grey levels²]: that of rounding, and of what is rounded."""
+    relative: float = 0.0
+    """Variance as a share of the level squared: speckle, texture, unequal pixels."""
+
+    rows: float = 0.0
+    """Standard deviation of what all pixels of an image row have in common [grey levels]."""
 
     def averaged(self, pixels: int) -> "Noise":
-        """Give the noise of the mean of so many pixels.
+        """Compute the noise of the mean of so many pixels.
 
         Its least variance stays: rounding and an encoder's blocks are alike in neighbours.
         """
-        return replace(self, fixed=self.fixed / pixels, gain=self.gain / pixels)
+        return replace(
+            self,
+            fixed=self.fixed / pixels,
+            gain=self.gain / pixels,
+            relative=self.relative / pixels,
+        )
+
+    def variance(self, level: np.ndarray) -> np.ndarray:
+        """Compute the variance of a pixel at each level [grey levels²]."""
+        return np.maximum(self.fixed + level * (self.gain + level * self.relative), self.least)
+
+    def as_law(self) -> Scalars:
+        """List what a compiled loop needs: fixed, gain, relative, least, white."""
+        return np.array([self.fixed, self.gain, self.relative, self.least, self.white])
 
 
 @dataclass(frozen=True)
@@ -42,6 +66,27 @@ class StripeShape:
     """Factor by which true centres scatter more than the noise explains, at least 1."""
     floor: float
     """What they scatter beside that: speckle and texture [px of the binned picture]."""
+    clutter: Noise | None = None
+    """Variance of a matched filter's answer where there is no stripe, by the level around it: noise
+    and all that a picture has of this width beside; that of the noise alone unless given."""
+
+
+@dataclass(frozen=True, eq=False)
+class FixedPattern:
+    """What is fixed to the picture and not to the scene: rim, dirt, scratches, ghosts, text."""
+
+    first_row: int
+    """First row of the full frame in the pictures that have it; fields have their own."""
+    levels: Float32[np.ndarray, "h w"]
+    """What it adds to each pixel, beside what is smooth [grey levels]."""
+    overlay: Bool[np.ndarray, "h w"] | None = None
+    """Where a display writes over the picture, so that nothing of the scene is seen."""
+
+    @cached_property
+    def transposed(self) -> "FixedPattern":
+        """The same with its rows and columns exchanged."""
+        overlay = None if self.overlay is None else np.ascontiguousarray(self.overlay.T)
+        return FixedPattern(self.first_row, np.ascontiguousarray(self.levels.T), overlay)
 
 
 @dataclass(frozen=True)
@@ -60,7 +105,7 @@ class Attenuation:
         return self.low > 0.1 * self.high
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Background:
     """What an extractor has learnt from a recording before it looks for the stripe."""
 
@@ -68,8 +113,12 @@ class Background:
     """Standard deviation of one pixel's grey level from frame to frame [grey levels]."""
     levels: Noise | None = None
     """The same for each grey level; of extractors that weigh by it."""
-    stripe: StripeShape | None = None
-    """The stripe's look; of extractors that expect one."""
+    shapes: tuple[StripeShape, ...] = ()
+    """The stripe's looks, the commonest first; of extractors that expect some."""
+    rates: Scalars = field(default_factory=lambda: np.zeros(0))
+    """How often clutter of each height is met; of extractors that weigh by it."""
+    fixed: tuple[FixedPattern, ...] = ()
+    """What stays in the picture whatever the scene; one for each kind of field."""
     attenuation: Attenuation | None = None
     """How murky the water is, where the glow tells."""
     remarks: tuple[str, ...] = ()

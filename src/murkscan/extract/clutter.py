@@ -1,0 +1,120 @@
+"""What a recording shows beside its stripe: how strongly filters answer it, and how often."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from jaxtyping import Float
+
+from .._kernels.matched_filter import score_pixels
+from ..types.arrays import Scalars
+from ..types.background import Noise
+from .matched_filter import MatchedFilter
+from .noise import fit_law
+from .ridges import Ridges
+from .scan_lines import ScanLines
+
+Rates = Float[np.ndarray, "..."]
+"""Ridges in a pixel and an e-fold of height, one a bin of heights."""
+
+_GAUSSIAN = 1.4826
+"""Standard deviation of Gaussian noise as a multiple of its median absolute value."""
+_EVERY = 3
+"""Scan lines from one to the next that are looked at: neighbours are alike."""
+_BINS, _FEWEST = 24, 400
+"""Bins of the level around, and answers that each has at least."""
+
+_TOLERATED = 2.0
+"""Factor by which answers may scatter more than noise explains before scores are divided by it."""
+_STEP = 0.35
+"""Width of a bin of heights [e-folds]."""
+_HEIGHTS = np.exp(np.log(2.5) + _STEP * np.arange(21))
+"""Middles of the bins: from noise to a white stripe in a black 16-bit picture."""
+_USUAL, _KNEE, _FALL = 0.02, 5.0, 1.5
+"""Rate of clutter that is expected before anything is known [1/px and e-fold], up to which height,
+and the power of the height by which it falls beyond: sizes of particles in the sea fall by a power
+of 3 to 4 and their light grows with the square of the size (Jonasz and Fournier 2007, section 5.8).
+"""
+_TRUSTED = 1e5
+"""Pixels that this expectation is worth."""
+_MAXIMA = 3.0
+"""Times that noise makes more low maxima than clutter is expected to; what is beyond is clutter."""
+_ENOUGH, _ALIKE = np.log(50.0), 4.0
+"""Evidence of one scan line up to which it counts fully, and the lines over which clutter hangs
+together, as a particle does: what is beyond counts as of so many lines at once."""
+
+
+def learn_response_law(frames: Sequence[ScanLines], matched: MatchedFilter) -> Noise:
+    """Estimate how a filter's answers scatter with the level around, where there is no stripe.
+
+    Noise, texture, blocks of an encoder and rows with a noise of their own all answer, each width
+    by its own strength. Most of a picture is no stripe, so that medians tell.
+
+    Args:
+        frames: Frames spread over the recording.
+        matched: The filter, with the noise that pixels alone have: answers are no weaker.
+    """
+    parts = [_answers(lines.binned(matched.binning), matched) for lines in frames]
+    level, answer = (np.concatenate(column) for column in zip(*parts, strict=True))
+    if len(level) < _FEWEST:
+        return matched.noise
+    order = np.argsort(level, kind="stable")
+    bins = [
+        (np.mean(level[part]), (_GAUSSIAN * np.median(np.abs(answer[part]))) ** 2, len(part))
+        for part in np.array_split(order, min(_BINS, max(len(order) // _FEWEST, 1)))
+    ]
+    table = np.array(bins, float)
+    # What is within a factor of two of the noise is counted as clutter, at its own heights.
+    usual = np.average(table[:, 1] / matched.noise.variance(table[:, 0]), weights=table[:, 2])
+    table[:, 1] /= np.clip(usual, 1.0, _TOLERATED)
+    return fit_law(table, matched.noise)
+
+
+def _answers(lines: ScanLines, matched: MatchedFilter) -> tuple[Scalars, Scalars]:
+    """List the level around, and the answer, of some pixels that are not saturated."""
+    signal, levels = lines.signal[:, ::_EVERY], lines.levels[:, ::_EVERY]
+    answers = score_pixels(signal, levels, matched.template, np.array([1.0, 0, 0, 1, 0]))
+    half = len(matched.template) // 2
+    inside = answers[half:-half]
+    ends = (levels[: -2 * half], levels[2 * half :])
+    around = 0.5 * (ends[0].astype(np.float32) + ends[1])
+    dark = around < lines.white
+    return around[dark].astype(float), inside[dark].astype(float)
+
+
+def usual_rates() -> Rates:
+    """Compute what clutter is expected before a recording is known; see `weigh_heights`."""
+    return _USUAL * np.maximum(_HEIGHTS / _KNEE, 1.0) ** -_FALL
+
+
+def learn_rates(
+    ridges: Sequence[Ridges], posteriors: Sequence[Float[np.ndarray, "_ most"]]
+) -> Rates:
+    """Count the ridges that are no stripe, by height [1/px and e-fold].
+
+    Args:
+        ridges: Of frames spread over the recording.
+        posteriors: Of each ridge being the stripe.
+    """
+    counts, pixels = np.zeros(len(_HEIGHTS)), 0
+    for one, posterior in zip(ridges, posteriors, strict=True):
+        stripe = posterior > 0.5
+        other = one.exist & ~stripe & ~one.are_within(stripe, one.reach)
+        place = np.rint(np.log(one.heights[other] / _HEIGHTS[0]) / _STEP).astype(int)
+        counts += np.bincount(np.clip(place, 0, len(counts) - 1), minlength=len(counts))
+        pixels += one.lines.levels.size
+    rates = (counts / _STEP + _TRUSTED * usual_rates()) / (pixels + _TRUSTED)
+    # Low ones are the noise's own maxima, and stripes that were missed.
+    low = np.maximum(usual_rates(), rates / _MAXIMA)
+    return np.where(_HEIGHTS < _KNEE, low, rates)
+
+
+def weigh_heights(
+    heights: Float[np.ndarray, "lines most"], rates: Rates
+) -> Float[np.ndarray, "lines most"]:
+    """Compute the likelihood ratio of each height, of a stripe against noise and clutter."""
+    logs = np.log(np.maximum(heights, 1.0))
+    clutter = np.exp(np.interp(logs, np.log(_HEIGHTS), np.log(rates)))
+    # Local maxima of white noise through the filter, by their height (Rice 1945).
+    noise = 0.55 * heights**2 * np.exp(-0.5 * heights**2)
+    evidence = -np.log(noise + clutter)
+    return np.exp(np.minimum(evidence, _ENOUGH + (evidence - _ENOUGH) / _ALIKE))
