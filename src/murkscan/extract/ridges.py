@@ -23,7 +23,7 @@ from .scan_lines import ScanLines
 
 MOST = 16
 """Ridges a scan line; the highest are kept. With six, text and bubbles crowd the stripe out."""
-_NARROW = 0.4
+_NARROW = 0.3
 """Share of a wider filter's answer from which the narrower one tells where the stripe is. A stripe
 answers a filter of half its width with 0.27 of what its own gives and less; the skirt of a narrow
 one, scattered by murk, answers wide filters up to twice as much as the core its own."""

@@ -27,8 +27,8 @@ _WINDOW = 10
 """Pixels on both sides of a stripe within which it sinks to half its height."""
 _WIDEST, _WANTED = 2.2, 1.1
 """Width above which more pixels are averaged, and the one that is wanted then [px]."""
-_NARROWEST, _WIDEST_BAND = 0.4, 24.0
-"""1σ of the narrowest stripe that pixels can show, and of a white band of 60 px [px]."""
+_WIDEST_BAND = 24.0
+"""1σ of a white band of 60 px [px]."""
 _LONGER = 10.0
 """Times that a stripe is longer than 1σ of its width, at least, to be told from a round blur."""
 _CLEAR, _FEW, _SHARE = 8.0, 100, 0.01
@@ -122,27 +122,36 @@ class _Learner:
         return float(np.nanmedian(known)) if np.isfinite(known).any() else _FIRST_WIDTH
 
     def find_others(self, shape: StripeShape) -> list[StripeShape]:
-        """Find out which other widths the stripe has, octaves away from a shape's."""
+        """Find out which wider looks the stripe has, octaves away from a shape's."""
         first = shape.width * shape.binning
         length = len(self.look[0].levels)
-        octaves = [first * 2.0**k for k in range(-3, 6) if k]
-        widths = [w for w in octaves if _NARROWEST <= w <= min(_WIDEST_BAND, length / 12)]
+        octaves = [first * 2.0**k for k in range(1, 6)]
+        widths = [w for w in octaves if w <= min(_WIDEST_BAND, length / 12)]
         shapes = (shape, *(_begin(width) for width in widths))
         bank = FilterBank.of(shapes, self.noise)
-        counts = np.zeros(len(shapes), int)
+        heights: list[list[Scalars]] = [[np.zeros(0)] for _ in shapes]
         for lines in self.look[:: max(len(self.look) // 8, 1)]:
             ridges = self._ridges(lines, bank)
-            line, which = self._sure(ridges, _CLEAR)
             for number, each in enumerate(shapes):
-                own = ridges.shapes[line, which] == number
-                on, place = np.zeros(lines.num_lines, bool), np.zeros(lines.num_lines)
-                on[line[own]] = True
-                place[line[own]] = ridges.positions[line[own], which[own]]
-                # Snow out of focus is as wide, but no longer than it is wide.
-                least = max(_LONGER * each.width * each.binning, 24.0)
-                counts[number] += find_runs(on, place, least=least).sum()
-        enough = max(_FEW, _SHARE * counts.sum())
-        return [s for s, count in zip(shapes[1:], counts[1:], strict=True) if count >= enough]
+                heights[number].append(self._long_heights(ridges, number, each))
+        known = [np.concatenate(each) for each in heights]
+        enough = max(_FEW, _SHARE * sum(len(each) for each in known))
+        # Where paint is dark, the water's skirt alone is left of a stripe: wide, but fainter.
+        usual = np.median(known[0]) if len(known[0]) else 0.0
+        found = zip(shapes[1:], known[1:], strict=True)
+        return [s for s, one in found if len(one) >= enough and np.median(one) >= usual]
+
+    def _long_heights(self, ridges: Ridges, number: int, shape: StripeShape) -> Scalars:
+        """List the heights of sure ridges of one shape that follow one another for long."""
+        line, which = self._sure(ridges, _CLEAR)
+        own = ridges.shapes[line, which] == number
+        on, place = np.zeros(len(ridges.counts), bool), np.zeros(len(ridges.counts))
+        on[line[own]] = True
+        place[line[own]] = ridges.positions[line[own], which[own]]
+        # Snow out of focus is as wide, but no longer than it is wide.
+        least = max(_LONGER * shape.width * shape.binning, 24.0)
+        long = find_runs(on, place, least=least)
+        return ridges.heights[line[own], which[own]][long[line[own]]]
 
     def learn(self, shapes: tuple[StripeShape, ...]) -> tuple[StripeShape, ...]:
         """Learn the shapes, from first ones."""
