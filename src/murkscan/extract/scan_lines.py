@@ -51,7 +51,7 @@ class ScanLines:
                 own = one if axis == "y" else one.transposed
                 signal, hidden = levels - own.levels, own.overlay
         if noise.rows and axis == "y":
-            signal = without_rows(signal, noise, noise.rows)
+            signal = without_rows(signal, noise)
         return cls(frame, axis, levels, signal, noise.white, hidden)
 
     def binned(self, binning: int) -> "ScanLines":
