@@ -91,6 +91,7 @@ def test_a_word_without_letters_is_not_taken_for_the_folder_one_is_in(words, cap
 
 
 def test_a_whole_number_is_asked_for_where_one_is_wanted(tmp_path, capfd):
+    (tmp_path / "scan.json").write_text("{}")
     assert run(["mesh", str(tmp_path), "--mesher", "poisson", "--set", "depth=8.5"]) == 2
     assert "'8.5' is not a whole number" in capfd.readouterr().err
 

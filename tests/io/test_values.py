@@ -9,7 +9,7 @@ from jaxtyping import Float32
 
 from murkscan.errors import FormatError
 from murkscan.io.values import as_plain, from_plain, load_value, save_value
-from murkscan.types.background import Attenuation, Background, Noise, StripeShape
+from murkscan.types.background import Attenuation, Background, FixedPattern, Noise, StripeShape
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,11 +48,21 @@ def test_a_value_comes_back_as_it_was(tmp_path):
 
 
 def test_what_an_extractor_has_learnt_comes_back(tmp_path):
-    shape = StripeShape(2.0, 0.1, 1, 1.0, 0.0)
+    noise = Noise(1.0, 0.1, 255.0)
+    shape = StripeShape(2.0, 0.1, 1, 1.0, 0.0, noise)
+    pattern = FixedPattern(1, np.eye(3, dtype=np.float32), np.eye(3) > 0)
     water = Attenuation(1.0, 0.5, 2.0)
-    background = Background(1.5, Noise(1.0, 0.1, 255.0), shape, water, ("odd",))
-    save_value(tmp_path / "a.json", background)
-    assert load_value(tmp_path / "a.json", Background) == background
+    rates = np.linspace(0.1, 0.01, 5)
+    learnt = Background(1.5, noise, (shape, shape), rates, (pattern,), water, ("odd",))
+    save_value(tmp_path / "a.json", learnt)
+    back = load_value(tmp_path / "a.json", Background)
+    np.testing.assert_array_equal(back.rates, learnt.rates)
+    (same,) = back.fixed
+    np.testing.assert_array_equal(same.levels, pattern.levels)
+    np.testing.assert_array_equal(same.overlay, pattern.overlay)
+    assert same.first_row == pattern.first_row
+    for name in ("noise", "levels", "shapes", "attenuation", "remarks"):
+        assert getattr(back, name) == getattr(learnt, name)
 
 
 def test_a_unit_stands_in_the_key():

@@ -59,9 +59,9 @@ def mesh(
         faces=faces,
         paint={"depth": ByDepth(), "signal": BySignal(), "none": None}[colour],
     )
+    chosen = make_mesher(mesher, settings)
     project = Project(out, WORDS.get())
     with progress_bars() as progress:
-        chosen = make_mesher(mesher, settings)
         result = build_mesh(project, chosen, finish=finish, progress=progress)
         written = [export_mesh(project, path) for path in export]
     print_result("mesh", result, out / "mesh")
