@@ -9,9 +9,11 @@ import pytest
 
 from murkscan.cli.main import run
 from murkscan.io.mesh_files import load_mesh, save_mesh
-from murkscan.io.ply import save_cloud
-from murkscan.project import Project
+from murkscan.project import CLOUD, CloudResult, Project
+from murkscan.types.cloud_part import CloudPart
 from murkscan.types.mesh import Mesh
+
+from ..projects import finish
 
 
 @pytest.fixture(scope="module")
@@ -132,6 +134,25 @@ def test_a_wrong_measure_is_one_sentence_and_leaves_nothing(scanned, capfd, argu
     assert listing() == before
 
 
+def keep(project, which, *, change=lambda cloud: cloud):
+    """Take all points out of a scan's cloud but some, as the cloud stage takes outliers out."""
+    parts = [project.load_cloud_part(part) for part in project.find_cloud_parts()]
+
+    def save():
+        for number, part in enumerate(parts):
+            out = np.where(part.stays & which(part.cloud), 0, 1).astype(np.uint8)
+            project.save_cloud_part(number, CloudPart(change(part.cloud), out, ("other",)))
+        project.export_cloud(frames=False)
+
+    stays = sum(int((part.stays & which(part.cloud)).sum()) for part in parts)
+    finish(project, CLOUD, CloudResult(stays, outliers=0), make=save)
+
+
+def is_first(cloud):
+    """Tell which points are of the first frame."""
+    return cloud.frame == cloud.frame.min()
+
+
 def test_a_scan_without_points_is_refused(scanned, tmp_path):
     from murkscan.errors import NotEnoughData
     from murkscan.measure import measure_plane
@@ -139,7 +160,7 @@ def test_a_scan_without_points_is_refused(scanned, tmp_path):
 
     shutil.copytree(scanned, tmp_path / "empty")
     project = Project(tmp_path / "empty")
-    save_cloud(tmp_path / "empty/cloud/cloud.ply", project.load_cloud()[:0])
+    keep(project, lambda cloud: np.zeros(len(cloud), bool))
     with pytest.raises(NotEnoughData, match="no points"):
         measure_points(project, measure_plane)
 
@@ -157,8 +178,7 @@ def test_a_scan_without_points_is_refused(scanned, tmp_path):
 def test_a_scan_without_a_surface_says_so_and_why(scanned, tmp_path, capfd, what):
     shutil.copytree(scanned, tmp_path / "single")
     project = Project(tmp_path / "single")
-    cloud = project.load_cloud()
-    save_cloud(tmp_path / "single/cloud/cloud.ply", cloud[cloud.frame == cloud.frame[0]])
+    keep(project, is_first)
     assert run(["mesh", str(tmp_path / "single"), "--colour", "none"]) == 0
     here = str(scanned / "mesh/mesh.ply")
     assert measure(tmp_path / "single", *(here if word == "here" else word for word in what)) == 2
@@ -172,9 +192,8 @@ def test_a_single_profile_has_no_dent_to_find(scanned, tmp_path):
 
     shutil.copytree(scanned, tmp_path / "single")
     project = Project(tmp_path / "single")
-    cloud = project.load_cloud()
-    profile = cloud[cloud.frame == cloud.frame[0]]
-    profile = replace(profile, normals=np.zeros_like(profile.normals))  # as the cloud stage has it
-    save_cloud(tmp_path / "single/cloud/cloud.ply", profile)
+    # As the cloud stage has a single profile: no neighbours, no normals.
+    keep(project, is_first, change=lambda c: replace(c, normals=np.zeros_like(c.normals)))
+    assert run(["mesh", str(tmp_path / "single"), "--colour", "none"]) == 0
     with pytest.raises(EstimationError):
         search_dents(project, smallest=0.02, largest=0.15)
