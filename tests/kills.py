@@ -171,11 +171,11 @@ def kill_after(seconds: float) -> None:
 
 
 def contents(root: Path) -> dict[str, object]:
-    """Read all that a folder holds, without the times that it states."""
+    """Read all that a folder holds, but for stated times and for who held it last."""
     return {
         file.relative_to(root).as_posix(): _without_times(file)
         for file in sorted(root.rglob("*"))
-        if file.is_file() and file.name != ".lock"
+        if file.is_file() and file.name not in (".lock", ".lock.json")
     }
 
 
