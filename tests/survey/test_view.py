@@ -84,7 +84,7 @@ def test_a_damaged_surface_costs_no_page_of_before(tmp_path):
     project, _ = merged(tmp_path / "both", LINE)
     draw_views(project)
     before = (project.root / "view/index.html").read_bytes()
-    (project.root / "cloud/cloud.ply").write_bytes(b"ply\n")
+    (project.root / "cloud/points/000000.parquet").write_bytes(b"PAR1")
     with pytest.raises(FormatError):
         draw_views(project, most=7)
     assert (project.root / "view/index.html").read_bytes() == before
