@@ -7,7 +7,6 @@ reads those from FIRST to END - 1 and says of each, in a line of JSON, how that 
 import inspect
 import json
 import random
-import resource
 import shutil
 import sys
 import traceback
@@ -31,6 +30,8 @@ from murkscan.simulate.scene_file import read_scene
 from murkscan.types.cloud import PointCloud
 from murkscan.types.mesh import Mesh
 from murkscan.types.trajectory import Trajectory
+
+from .memory import peak_kib
 
 SIZE = (96, 64)
 CODECS = {
@@ -250,7 +251,7 @@ def run_mutants(folder: Path, numbers: range) -> Iterator[dict[str, object]]:
         file = target / path.relative_to(folder / "seeds")
         file.write_bytes(mutate(path.read_bytes(), random.Random(number)))
         outcome, said = _try(kind, file)
-        peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+        peak = peak_kib() / 1024
         yield {"number": number, "seed": name, "outcome": outcome, "said": said, "peak_mib": peak}
         if outcome in ("read", "refused"):
             shutil.rmtree(target)

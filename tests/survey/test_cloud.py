@@ -350,9 +350,10 @@ def test_the_commands_merge_export_and_go_on(project, tmp_path, capsys, cloud):
 def test_an_export_does_not_hold_the_cloud_in_memory(tmp_path):
     """Three times the points take no more: only what one block takes, half a million points."""
     code = (
-        "import resource, sys; from pathlib import Path\n"
+        "import sys; from pathlib import Path\n"
         "sys.path.insert(0, sys.argv[2])\n"
         "from murkscan.types.cloud_part import CloudPart\n"
+        "from tests.memory import peak_kib\n"
         "from tests.survey.test_cloud import *\n"
         "root, cloud = Path(sys.argv[1]), scan_cloud(plane)\n"
         "project = as_project(root / 'scan', cloud)\n"
@@ -363,7 +364,7 @@ def test_an_export_does_not_hold_the_cloud_in_memory(tmp_path):
         "    finish(project, CLOUD, CloudResult(copies * len(cloud), 0), make=make)\n"
         "    export_cloud(project, root / 'dive.laz')\n"
         "    export_cloud(project, root / 'thin.laz', voxel=0.005)\n"
-        "    print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)\n"
+        "    print(peak_kib())\n"
     )
     command = [sys.executable, "-c", code, str(tmp_path), str(Path(__file__).parents[2])]
     said = subprocess.run(command, capture_output=True, text=True, check=True).stdout
