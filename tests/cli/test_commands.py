@@ -41,7 +41,7 @@ def test_each_stage_alone_makes_what_scan_makes(short, tmp_path, capsys):
     for name in ("cloud/cloud.ply", "mesh/mesh.ply", "view/isometric.png"):
         assert (alone / name).read_bytes() == (whole / name).read_bytes()
     said = capsys.readouterr().out
-    assert "20 read, 0 skipped" in said
+    assert "in 20 frames read, 0 skipped" in said
     assert "mesh.glb" in said
     assert "nothing had changed" not in said
     assert run(["scan", *_arguments(short, *step, "--out", str(whole))]) == 0

@@ -22,29 +22,20 @@ app = App(
     help="Find out what the camera and the laser are.",
     suppress_keyboard_interrupt=False,
 )
-app.command(
-    "murkscan.cli.calibrate_port:port",
-    name="port",
-    help="Find how the camera's port stands, from photos of a board under water.",
-)
-app.command(
-    "murkscan.cli.calibrate_laser:laser",
-    name="laser",
-    help="Calibrate a laser on photos of its line on a chessboard, in air or under water.",
-)
-app.command(
-    "murkscan.cli.calibrate_mount:mount",
-    name="mount",
-    help="Find where the camera sits on the vehicle, from photos of a board that stands still.",
-)
-app.command(
-    "murkscan.cli.calibrate_check:check",
-    name="check",
-    help="Measure a known length in the scan's own water, and say whether the rig is right.",
-)
+for _place, (_name, _help) in enumerate(
+    {
+        "port": "Find how the camera's port stands, from photos of a board under water.",
+        "laser": "Calibrate a laser on photos of its line on a board, in air or under water.",
+        "mount": "Find where the camera sits on the vehicle, from photos of a still board.",
+        "check": "Measure a known length in the scan's own water: is the rig right?",
+    }.items()
+):
+    app.command(
+        f"murkscan.cli.calibrate_{_name}:{_name}", name=_name, help=_help, sort_key=_place + 1
+    )
 
 
-@app.command
+@app.command(sort_key=0)
 def camera(
     images: PhotoPath,
     *,

@@ -3,9 +3,26 @@
 import math
 from collections.abc import Mapping
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING
 
-from .words import print_table, say, say_verdict
+from .words import print_table, say, say_verdict, tell
+
+_NEXT = {
+    "camera": (
+        "in air: murkscan calibrate laser PHOTOS --board 9x6 --square-mm 30 --rig {rig}",
+        "behind a window: write [camera.port] and [water] into {rig} as measured, then "
+        "murkscan calibrate port PHOTOS --board 9x6 --square-mm 30 --rig {rig}",
+    ),
+    "port": ("murkscan calibrate laser PHOTOS --board 9x6 --square-mm 30 --rig {rig}",),
+    "laser": (
+        "murkscan calibrate check PHOTOS --board 9x6 --square-mm 30 --rig {rig}, in the water at "
+        "hand",
+        "murkscan scan RECORDING --rig {rig} --speed-mm-s V --out OUT",
+    ),
+    "mount": ("murkscan scan RECORDING --rig {rig} --poses LOG --out OUT",),
+}
+"""What follows each step; the board is whoever's it is."""
 
 if TYPE_CHECKING:
     from ..calibrate import Calibration, CalibrationVerdict
@@ -23,13 +40,21 @@ def print_result(result: "CalibrationResult", rig: Path) -> None:
     _print_photos(found)
     say_unused(result.unused, used=len(found.sightings))
     for remark in result.remarks:
-        say(remark)
-    say(f"Written to {rig}; see {result.page}, with every photo and what was found in it.")
+        tell("note", remark)
+    tell("made", f"written to {rig}")
+    tell("look", f"open {result.page}: every photo, and what was found in it")
+    tell("next", *_next_steps(found.step, result.verdict.is_good, rig))
+
+
+def _next_steps(step: str, is_good: bool, rig: Path) -> list[str]:
+    """Say what to do after a step of the calibration."""
+    again = [] if is_good else ["what the verdict asks for, and this command again; or go on:"]
+    return [*again, *(line.format(rig=quote(str(rig))) for line in _NEXT[step])]
 
 
 def say_unused(unused: Mapping[str, str], *, used: int) -> None:
     """Say how many photos were used, and which were not and why."""
-    say(f"{used} of {used + len(unused)} photos used.")
+    tell("photos", f"{used} of {used + len(unused)} used")
     if unused:
         print_table("Not used", ("photo", "because it"), list(unused.items()))
 

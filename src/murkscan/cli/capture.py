@@ -2,10 +2,13 @@
 
 from collections.abc import Generator, Iterator
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter, validators
 from cyclopts.types import PositiveFloat
+
+from .words import tell
 
 if TYPE_CHECKING:
     from ..capture import RecordingProgress
@@ -49,10 +52,11 @@ def capture(
         # Stopping by hand is how a recording ends, and no failure, even before --seconds are over.
         ending = "; stopped by hand, and whole up to there"
         if last is None:
-            print(f"{out}: nothing is recorded, since no picture had come when it was stopped")
+            tell("made", f"nothing: no picture had come when it was stopped, {out} is not written")
     finally:
         if last is not None:
-            print(f"{out}: {_describe(last)}{ending}")
+            tell("made", f"{_describe(last)}: {out}{ending}")
+            tell("next", f"murkscan scan {quote(str(out))} --rig RIG --speed-mm-s V --out SCAN")
 
 
 def _start(

@@ -4,6 +4,7 @@ from pathlib import Path
 
 from ..errors import FormatError
 from .progress import progress_bars
+from .words import tell
 
 
 def check(out: Path) -> None:
@@ -23,10 +24,10 @@ def check(out: Path) -> None:
         counts = f"{one.num_whole:,} files as they were written"
         if one.foreign:
             counts += f", {len(one.foreign):,} that are not murkscan's"
-        print(f"{one.word:<12}{counts}{'; ' + one.state if one.state else ''}")
+        tell(one.word, f"{counts}{'; ' + one.state if one.state else ''}")
     spoilt = [name for one in checks for name in (*one.changed, *one.missing)]
     for name in spoilt:
-        print(f"  {'changed' if (out / name).exists() else 'missing'}: {name}")
+        tell("", f"{'changed' if (out / name).exists() else 'missing'}: {name}")
     if spoilt:
         raise FormatError(
             f"{len(spoilt):,} files of {out} are not as they were written. Delete those that have "

@@ -47,6 +47,7 @@ def cloud(
     from ..survey.merged import is_merged
     from ..survey.scan_rig import load_scan_rig
     from .summary import print_result
+    from .words import tell
 
     project = Project(out, WORDS.get())
     for path in export:
@@ -60,6 +61,6 @@ def cloud(
             result = build_cloud(project, rig, rules=rules, frames=frames, progress=progress)
         voxel = None if voxel_mm is None else voxel_mm / 1e3
         written = [export_cloud(project, path, voxel=voxel, progress=progress) for path in export]
-    print_result("cloud", result, out / "cloud")
     for path, count in zip(export, written, strict=True):
-        print(f"export: points {count:,}; {path}")
+        tell("exported", f"{count:,} points: {path}")
+    print_result("cloud", result, out / "cloud" / "cloud.ply", out=out)

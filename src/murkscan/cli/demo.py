@@ -1,9 +1,13 @@
 """murkscan demo: scan the built-in sample."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from .progress import progress_bars
-from .words import say
+from .words import say, tell
+
+if TYPE_CHECKING:
+    from ..survey.demo import Errors
 
 
 def demo(out: Path = Path("murkscan-demo")) -> None:
@@ -25,20 +29,21 @@ def demo(out: Path = Path("murkscan-demo")) -> None:
         f"minute more; all of it goes into {out}."
     )
     with progress_bars() as progress:
-        from ..survey.demo import FALSE, run_demo
+        from ..survey.demo import run_demo
         from .summary import print_summary
 
         ours, paper = run_demo(out, progress=progress)
-    print(
-        f"recording  {out / 'recording'}: a ship model's hull in water of 3 attenuations per "
-        "metre, simulated"
-    )
+    tell("recording", f"a ship model's hull, simulated: {out / 'recording'}")
     print_summary(ours.project)
-    for one in (ours, paper):
-        errors = one.errors
-        print(
-            f"truth      {one.name}: {errors.false / max(errors.count, 1):.1%} of the points are "
-            f"false, more than {FALSE * 1e3:g} mm off; the others lie within "
-            f"{errors.rms * 1e3:.2f} mm RMS of the true hull"
-        )
-    print(f"compared   {out / 'index.html'}")
+    tell("truth", *(_tell_errors(one.name, one.errors) for one in (ours, paper)))
+    tell("compared", f"open {out / 'index.html'}: both scans side by side")
+    tell("yours", 'README.md, section "Your own scan"; to practise: murkscan simulate --list')
+
+
+def _tell_errors(name: str, errors: "Errors") -> str:
+    from ..survey.demo import FALSE
+
+    return (
+        f"{name}: {errors.false / max(errors.count, 1):.1%} of the points are false, more than "
+        f"{FALSE * 1e3:g} mm off; the others are off by {errors.rms * 1e3:.2f} mm (RMS)"
+    )

@@ -67,6 +67,6 @@ def extract(
             executor=executor,
             progress=progress,
         )
-    print_result("extract", result, out / "extract")
+    print_result("extract", result, out / "extract", out=out)
     print_skips(result.skips)
     print_remarks(result.remarks, result.attenuation)

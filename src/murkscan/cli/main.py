@@ -3,13 +3,13 @@
 import io
 import shutil
 import sys
-import textwrap
 import traceback
 
 from cyclopts import App, CycloptsError
 
 from ..errors import MurkscanError
 from .typed import WORDS
+from .words import wrap
 
 _COMMANDS = {
     "demo": "Scan the built-in sample and say how far the model is from the truth.",
@@ -97,10 +97,5 @@ def run(arguments: list[str]) -> int:
 def _say(sentence: str, status: int) -> int:
     width = shutil.get_terminal_size().columns if sys.stderr.isatty() else 10_000
     for line in f"murkscan: {sentence}".splitlines():
-        print(
-            textwrap.fill(line, width, break_long_words=False, break_on_hyphens=False)
-            if len(line) > width
-            else line,
-            file=sys.stderr,
-        )
+        print(wrap(line, width) if len(line) > width else line, file=sys.stderr)
     return status

@@ -34,14 +34,14 @@ app = App(
     usage="Usage: murkscan measure OUT WHAT [OPTIONS]\n",
     suppress_keyboard_interrupt=False,
 )
-for _file, _name, _help in (
-    ("extent", "step", "Measure the step between two parallel planes."),
-    ("extent", "area", "Measure the area of the surface, as far as it was scanned."),
-    ("extent", "volume", "Measure the volume between the surface and a plane, or inside it."),
-    ("deviation", "deviation", "Compare the scan with a drawing's mesh or an earlier scan."),
-    ("deviation", "dents", "Find dents and bumps, with place, depth and diameter."),
+for _file, _name, _help, _place in (
+    ("extent", "step", "Measure the step between two parallel planes.", 5),
+    ("extent", "area", "Measure the area of the surface, as far as it was scanned.", 6),
+    ("extent", "volume", "Measure the volume between the surface and a plane, or inside it.", 7),
+    ("deviation", "deviation", "Compare the scan with a drawing's mesh or an earlier scan.", 8),
+    ("deviation", "dents", "Find dents and bumps, with place, depth and diameter.", 9),
 ):
-    app.command(f"murkscan.cli.measure_{_file}:{_name}", name=_name, help=_help)
+    app.command(f"murkscan.cli.measure_{_file}:{_name}", name=_name, help=_help, sort_key=_place)
 
 
 @app.default
@@ -67,7 +67,7 @@ def measure(
     )
 
 
-@app.command
+@app.command(sort_key=0)
 def distance(out: CloudScan, *, from_m: Place, to_m: Place, name: Name = "distance") -> None:
     """Measure between two points of the scan.
 
@@ -91,7 +91,7 @@ def distance(out: CloudScan, *, from_m: Place, to_m: Place, name: Name = "distan
     )
 
 
-@app.command
+@app.command(sort_key=2)
 def plane(out: CloudScan, *, part: PartFlags = PartFlags(), name: Name = "plane") -> None:
     """Fit a plane to a part of the scan."""
     from ..measure import measure_plane
@@ -99,7 +99,7 @@ def plane(out: CloudScan, *, part: PartFlags = PartFlags(), name: Name = "plane"
     _measure_part(out, measure_plane, part, name)
 
 
-@app.command
+@app.command(sort_key=3)
 def sphere(out: CloudScan, *, part: PartFlags = PartFlags(), name: Name = "sphere") -> None:
     """Fit a sphere to a part of the scan."""
     from ..measure import measure_sphere
@@ -107,7 +107,7 @@ def sphere(out: CloudScan, *, part: PartFlags = PartFlags(), name: Name = "spher
     _measure_part(out, measure_sphere, part, name)
 
 
-@app.command
+@app.command(sort_key=4)
 def cylinder(out: CloudScan, *, part: PartFlags = PartFlags(), name: Name = "cylinder") -> None:
     """Fit a cylinder to a part of the scan, such as a pipe or a pile."""
     from ..measure import measure_cylinder
@@ -115,7 +115,7 @@ def cylinder(out: CloudScan, *, part: PartFlags = PartFlags(), name: Name = "cyl
     _measure_part(out, measure_cylinder, part, name)
 
 
-@app.command
+@app.command(sort_key=1)
 def section(
     out: MeshScan,
     *,

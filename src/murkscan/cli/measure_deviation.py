@@ -1,12 +1,13 @@
 """murkscan measure deviation and dents: compare a scan with what it should be."""
 
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
 from .measure_part import MeshScan, PartFlags, print_measurement
-from .words import print_table, say
+from .words import print_table, say, tell
 
 if TYPE_CHECKING:
     from ..measure import DentSearch
@@ -62,8 +63,9 @@ def deviation(
         selection=part.select(),
     )
     print_measurement(out, name, found, suffixes=("ply", "csv"))
-    for kind in ("front", "isometric", "histogram"):
-        say(str(out / "measure" / f"{name}-{kind}.png"))
+    kinds = ("front", "isometric", "histogram")
+    tell("pictures", *(str(out / "measure" / f"{name}-{kind}.png") for kind in kinds))
+    tell("next", f"murkscan view {quote(str(out))} colours the page by it: {name}")
 
 
 def dents(
@@ -107,8 +109,8 @@ def dents(
         selection=part.select(),
     )
     _print_dents(search)
-    for kind in (".json", ".ply", ".csv", "-front.png", "-isometric.png"):
-        say(str(out / "measure" / f"{name}{kind}"))
+    endings = (".json", ".ply", ".csv", "-front.png", "-isometric.png")
+    tell("made", *(str(out / "measure" / f"{name}{ending}") for ending in endings))
 
 
 def _load(project: "Project", path: Path, unit: Unit, as_given: bool) -> "Reference":

@@ -45,6 +45,7 @@ def merge(
             raise InputError(f"{flag} must be above 0, got {value:g}.")
     from ..survey.merge import merge_passes
     from .summary import print_result
+    from .words import tell
 
     with progress_bars() as progress:
         result = merge_passes(
@@ -57,5 +58,5 @@ def merge(
             progress=progress,
         )
     for one in result.passes:
-        print(f"{one.path}: {one.words}")
-    print_result("merge", result, out / "cloud")
+        tell("pass", f"{one.path}: {one.words}")
+    print_result("merge", result, out / "cloud" / "cloud.ply", out=out)

@@ -51,6 +51,7 @@ def mesh(
     from ..project import Project
     from ..survey.mesh import Finish, build_mesh, check_mesh_export, export_mesh
     from .summary import print_result
+    from .words import tell
 
     for path in export:
         check_mesh_export(path)
@@ -64,6 +65,6 @@ def mesh(
     with progress_bars() as progress:
         result = build_mesh(project, chosen, finish=finish, progress=progress)
         written = [export_mesh(project, path) for path in export]
-    print_result("mesh", result, out / "mesh")
     for path, count in zip(export, written, strict=True):
-        print(f"export: triangles {count:,}; {path}")
+        tell("exported", f"{count:,} triangles: {path}")
+    print_result("mesh", result, out / "mesh", out=out)

@@ -23,5 +23,5 @@ def motion(out: ScanFolder, *, flags: MotionFlags = MotionFlags()) -> None:
     rig = load_scan_rig(project)
     laser = project.finished(EXTRACT).result.laser
     result = follow_motion(project, flags.make(rig, laser))
-    print_result("motion", result, out / "motion")
+    print_result("motion", result, out / "motion", out=out)
     print_remarks(result.remarks)

@@ -4,11 +4,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
-from cyclopts import Parameter
+from cyclopts import Group, Parameter
 
 from ..errors import InputError
 from ..ui.values import read_start_time
 from .paths import MaybeLogPath
+from .words import tell
 
 if TYPE_CHECKING:
     from ..capture import AbstractRecording
@@ -18,11 +19,16 @@ if TYPE_CHECKING:
     from ..types.trajectory import Trajectory
 
 
+MOTION = Group("How the camera moved", sort_key=11)
+READING = Group("How to read the recording", sort_key=12)
+WORK = Group("Who does the work", sort_key=13)
+"""Every command shows its own flags first, then these, in this order."""
+
 Settings = Annotated[tuple[str, ...], Parameter(name="--set", negative=())]
 """Settings of a Choice, each as NAME=NUMBER."""
 
 
-@Parameter(name="*")
+@Parameter(name="*", group=READING)
 @dataclass(frozen=True)
 class RecordingFlags:
     """How to read the recording."""
@@ -30,8 +36,7 @@ class RecordingFlags:
     fps: float | None = None
     """Pictures a second, for a folder of images without times.csv."""
     fields: Literal["auto", "progressive", "top-first", "bottom-first"] = "auto"
-    """Whether each picture holds two fields of an interlaced camera, and which came first; found
-    from the pictures unless said."""
+    """Whether a picture holds two fields of an interlaced camera; found if not said."""
 
     def open(self, path: Path, rig: "Rig") -> "AbstractRecording":
         """Open the recording of a rig."""
@@ -41,11 +46,11 @@ class RecordingFlags:
             path, wavelength=rig.wavelength, fps=self.fps, fields=self.fields
         )
         for remark in recording.remarks:
-            print(f"recording  {path.name}: {remark}")
+            tell("recording", f"{path.name}: {remark}")
         return recording
 
 
-@Parameter(name="*")
+@Parameter(name="*", group=WORK)
 @dataclass(frozen=True)
 class ExecutorFlags:
     """Who does the work; the result is the same."""
@@ -55,8 +60,7 @@ class ExecutorFlags:
     workers: int | None = None
     """How many threads or processes; as many as there are cores unless said."""
     dask_address: str | None = None
-    """Where the scheduler of a Dask cluster listens, as tcp://host:8786; without it one is begun
-    here."""
+    """Where a Dask cluster's scheduler listens, as tcp://host:8786; without it one is begun."""
 
     def make(self) -> "AbstractExecutor":
         """Make the executor that these flags describe."""
@@ -82,7 +86,7 @@ _OF_LOGS = {
 """Flags that mean something to a log of poses only, and what they are unless given."""
 
 
-@Parameter(name="*")
+@Parameter(name="*", group=MOTION)
 @dataclass(frozen=True)
 class MotionFlags:
     """How the camera moved: exactly one of --speed-mm-s, --step-mm and --poses."""
@@ -92,8 +96,7 @@ class MotionFlags:
     step_mm: float | None = None
     """Constant step [mm] from one recorded picture to the next; negative for the other way."""
     poses: MaybeLogPath = None
-    """Log of poses: CSV with time_s,x_m,y_m,z_m,qw,qx,qy,qz, or northing, easting, depth, roll,
-    pitch, heading; EuRoC, rostopic echo -p, or TUM."""
+    """Log of poses: CSV by its columns' names, EuRoC, rostopic echo -p, or TUM; docs/motion.md."""
     along: Literal["x", "y", "z"] | None = None
     """Camera axis of a constant speed or step; the laser's axis unless said."""
     start_time: str = "0"
@@ -162,9 +165,9 @@ class MotionFlags:
 
         said = (self.log_time, self.log_quaternion, self.log_axes, self.log_angles)
         read = read_pose_log(path, PoseConvention(*said))
-        print(f"poses      {path}: {len(read.log.times):,}, {read.understood}")
+        tell("poses", f"{path}: {len(read.log.times):,}, {read.understood}")
         if read.left_out:
-            print(f"  note: {read.tell_left_out()}")
+            tell("note", read.tell_left_out())
         return read.log
 
     def _check_effect(self) -> None:

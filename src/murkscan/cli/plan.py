@@ -9,7 +9,7 @@ from cyclopts.types import PositiveFloat
 from ..errors import InputError
 from .paths import RigFile
 from .progress import progress_bars
-from .words import print_table, say
+from .words import print_table, say, tell
 
 if TYPE_CHECKING:
     from ..survey.plan import Plan
@@ -152,5 +152,5 @@ def _print(made: "Plan", out: Path) -> None:
     print_table("What this rig will see (σ and spacing in mm)", made.head, made.rows)
     for sentence in made.sentences:
         say(sentence)
-    print(f"page       {out / 'index.html'}")
-    print(f"numbers    {out / 'plan.json'}")
+    tell("made", f"{out / 'index.html'}, with charts; {out / 'plan.json'}, the numbers")
+    tell("next", "open the page; try other flags, then write the rig file of what you will build")

@@ -22,5 +22,5 @@ def report(out: ScanFolder, *, spacing_mm: float | None = None) -> None:
 
     with progress_bars() as progress:
         spacing = None if spacing_mm is None else spacing_mm / 1e3
-        write_report(Project(out, WORDS.get()), spacing=spacing, progress=progress)
-    print_result("report", None, out / "report" / "index.html")
+        result = write_report(Project(out, WORDS.get()), spacing=spacing, progress=progress)
+    print_result("report", result, out / "report" / "index.html", out=out)

@@ -18,6 +18,7 @@ from .options import ExecutorFlags, MotionFlags, RecordingFlags, Settings
 from .paths import RecordingPath, RigFile
 from .progress import progress_bars
 from .typed import WORDS
+from .words import say
 
 
 def scan(
@@ -86,4 +87,4 @@ def scan(
         )
     print_summary(project)
     if before is not None and before == when_reported(out):
-        print("All of this was there already, and nothing had changed.")
+        say("All of this was there already, and nothing had changed.")

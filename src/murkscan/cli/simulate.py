@@ -1,12 +1,17 @@
 """murkscan simulate: make a recording whose truth is known."""
 
 from pathlib import Path
-from typing import Annotated
+from shlex import quote
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
 from ..errors import InputError
 from .progress import progress_bars
+from .words import say, tell
+
+if TYPE_CHECKING:
+    from ..simulate import Scene
 
 
 def simulate(
@@ -42,10 +47,29 @@ def simulate(
     with progress_bars() as progress:
         made = simulate_recording(made_of, out, text=text, progress=progress)
     fields = f", {made.num_frames} fields" if made.num_pictures < made.num_frames else ""
-    print(f"recording  {made.recording}: {made.num_pictures} pictures{fields}")
-    print(f"rig        {out / 'rig.toml'}")
-    print(f"poses      {out / 'poses.csv'}")
-    print(f"truth      {out / 'truth'}: {made.num_centres:,} true centres of the stripe")
+    tell("recording", f"{made.num_pictures} pictures{fields}: {made.recording}")
+    tell("rig", str(out / "rig.toml"))
+    tell("poses", str(out / "poses.csv"))
+    if made.num_centres:
+        tell("truth", f"{made.num_centres:,} true centres of the stripe: {out / 'truth'}")
+    tell("next", _next_step(made_of, made.recording, out))
+
+
+def _next_step(scene: "Scene", recording: Path, out: Path) -> str:
+    """Say what the recording can be used for."""
+    from ..simulate.textures.checkered import Checkered
+
+    if boards := [b.texture for b in scene.bodies if isinstance(b.texture, Checkered)]:
+        board = boards[0]
+        step = "laser" if scene.rig.lasers else "port" if scene.rig.camera.port else "camera"
+        return (
+            f"murkscan calibrate {step} {quote(str(recording))} --board "
+            f"{board.columns}x{board.rows} --square-mm {1e3 * board.square:g} --rig RIG"
+        )
+    return (
+        f"murkscan scan {quote(str(recording))} --rig {quote(str(out / 'rig.toml'))} --poses "
+        f"{quote(str(out / 'poses.csv'))} --out SCAN"
+    )
 
 
 def _print_scenes() -> None:
@@ -54,8 +78,8 @@ def _print_scenes() -> None:
     scenes = list_scenes()
     width = max(map(len, scenes)) + 2
     for name, line in scenes.items():
-        print(f"{name:{width}}{line}")
-    print(
-        "\nAdd -c0.3, -c0.5, -c1.5, -c3, -c4, -c5 or -c6 for water of that beam attenuation per "
-        "metre,\nand (but for chessboards) -hd for a machine-vision rig: hull-c3-hd."
+        tell(name, line, indent=width)
+    say(
+        "Add -c0.3, -c0.5, -c1.5, -c3, -c4, -c5 or -c6 for water of that beam attenuation per "
+        "metre, and (but for chessboards) -hd for a machine-vision rig: hull-c3-hd."
     )

@@ -37,4 +37,4 @@ def triangulate(
             executor=executor,
             progress=progress,
         )
-    print_result("triangulate", result, out / "triangulate")
+    print_result("triangulate", result, out / "triangulate", out=out)

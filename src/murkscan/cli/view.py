@@ -51,7 +51,7 @@ def view(
         from ..project import Project
         from ..survey.view import draw_views, film_scan
         from .summary import print_result
-        from .words import say
+        from .words import tell
 
         result = draw_views(
             Project(out, WORDS.get()),
@@ -64,8 +64,6 @@ def view(
         )
         if film is not None:
             film_scan(Project(out), film, progress=progress)
-    if result.relation:
-        say(result.relation)
-    print_result("view", result, out / "view" / "index.html")
     if film is not None:
-        print(f"film: {film}")
+        tell("film", str(film))
+    print_result("view", result, out / "view" / "index.html", out=out)

@@ -3,6 +3,7 @@
 from .conditions import Conditions as Conditions
 from .conditions import attenuation_from_secchi as attenuation_from_secchi
 from .conditions import attenuation_from_visibility as attenuation_from_visibility
+from .conditions import visibility_from_attenuation as visibility_from_attenuation
 from .forecast import VISIBLE as VISIBLE
 from .forecast import Forecast as Forecast
 from .forecast import forecast as forecast

@@ -59,6 +59,11 @@ def attenuation_from_visibility(visibility: float) -> float:
     return _BLACK_DISC / visibility
 
 
+def visibility_from_attenuation(attenuation: float) -> float:
+    """Give how far a diver sees [m] in water of a beam attenuation [1/m]: the inverse."""
+    return _BLACK_DISC / max(attenuation, 1e-9)
+
+
 def attenuation_from_secchi(depth: float) -> float:
     """Give the beam attenuation [1/m] of water in which a Secchi disc disappears at a depth [m].
 

@@ -35,7 +35,7 @@ MOTION = Kind("motion", MotionResult, meaning=1)
 CLOUD = Kind("cloud", CloudResult, meaning=2)
 MESH = Kind("mesh", MeshResult, meaning=1)
 VIEW = Kind("view", ViewResult, meaning=1)
-REPORT = Kind("report", ReportResult, meaning=1)
+REPORT = Kind("report", ReportResult, meaning=2)
 
 STAGES: tuple[Kind[Any], ...] = (EXTRACT, TRIANGULATE, MOTION, CLOUD, MESH, VIEW, REPORT)
 """The stages of a scan, in order."""

@@ -154,6 +154,16 @@ class ReportResult:
     skipped: int
     frames_without_stripe: int
     points: int
+    covered: float | None = None
+    """Share of the surface passed over that the scan has; None where it is not known."""
+    largest_gap: str | None = None
+    """Why most of the rest is missing; None where nothing is."""
+    half_width: float | None = field(default=None, metadata={"unit": "m"})
+    """Half the 95 % interval of a typical point [m]."""
+    is_common_known: bool = False
+    """Whether that heeds the calibration, too."""
+    steps_with_advice: tuple[str, ...] = ()
+    """Steps of the calibration whose verdict asks for better."""
 
 
 @dataclass(frozen=True)

@@ -26,3 +26,4 @@ from .timeline import FrameStatistics as FrameStatistics
 from .timeline import Timeline as Timeline
 from .timeline import frame_statistics as frame_statistics
 from .timeline import make_timeline as make_timeline
+from .trust import AT_95 as AT_95

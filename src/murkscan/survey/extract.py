@@ -58,7 +58,9 @@ def extract_recording(
     def make(_: None) -> ExtractResult:
         background = project.load_background()
         if background is None:
+            progress("learn the recording", 0, None)
             background = extractor.learn(recording.sample(_SAMPLES), rig, laser=laser)
+            progress("learn the recording", 1, 1)
             project.save_background(background)
         job = _Job(project, rig, extractor, background, laser, overlay_step(recording))
         _extract_parts(job, recording, executor or Threads(), progress)

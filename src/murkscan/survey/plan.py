@@ -11,7 +11,14 @@ from ..errors import MurkscanError
 from ..io.json_files import save_json
 from ..io.text import save_text
 from ..page import Facts, Note, Section, Table, render_page
-from ..plan import Conditions, Forecast, Placement, forecast, place_laser
+from ..plan import (
+    Conditions,
+    Forecast,
+    Placement,
+    forecast,
+    place_laser,
+    visibility_from_attenuation,
+)
 from ..plan.charts import bound_chart, sigma_chart
 from ..plan.placement import present_place
 from ..types.rig import Rig
@@ -74,7 +81,7 @@ def make_plan(
     sentences = [
         f"It sees from {nearest:.2f} to {farthest:.2f} m: there half of the points or more are "
         f"found, in water of beam attenuation {conditions.medium.attenuation:.2f} per metre, in "
-        f"which a diver sees {4.8 / max(conditions.medium.attenuation, 1e-9):.1f} m.",
+        f"which a diver sees {visibility_from_attenuation(conditions.medium.attenuation):.1f} m.",
         f"Profiles {spacing * 1e3:g} mm apart at {frame_rate:g} frames a second: go no faster than "
         f"{speed * 1e3:.0f} mm/s. While a frame is exposed that is "
         f"{speed * conditions.sensor.exposure * 1e3:.2g} mm.",

@@ -16,7 +16,7 @@ from ..project import (
     ReportResult,
     digest,
 )
-from ..report import ScanSummary, Shown, as_html, as_json, summarise, with_coverage
+from ..report import AT_95, ScanSummary, Shown, as_html, as_json, summarise, with_coverage
 from .progress import Progress, silent
 from .recorded import tell_recording
 from .scan_rig import load_recording_record, load_scan_rig
@@ -50,17 +50,30 @@ def write_report(
 
     def make(summary: ScanSummary) -> ReportResult:
         project.save_report(as_json(summary), as_html(summary))
-        return ReportResult(
-            frames=summary.num_frames,
-            skipped=summary.recorded.num_skipped,
-            frames_without_stripe=summary.num_empty,
-            points=summary.num_points,
-        )
+        return _in_short(summary)
 
     def prepare() -> ScanSummary:
         return _summarise(project, spacing)
 
     return run_stage(project, stage, make, prepare=prepare, progress=progress)
+
+
+def _in_short(summary: ScanSummary) -> ReportResult:
+    coverage, trust = summary.coverage, summary.trust
+    missing = {} if coverage is None else coverage.missing
+    worst = max(missing, key=lambda cause: missing[cause], default=None)
+    typical = None if trust is None else trust.total.median
+    return ReportResult(
+        frames=summary.num_frames,
+        skipped=summary.recorded.num_skipped,
+        frames_without_stripe=summary.num_empty,
+        points=summary.num_points,
+        covered=None if coverage is None else coverage.covered / coverage.mapped,
+        largest_gap=None if worst is None or not missing[worst] else worst,
+        half_width=None if typical is None else AT_95 * typical,
+        is_common_known=trust is not None and trust.common is not None,
+        steps_with_advice=tuple(s.name for s in summary.steps if s.verdict and not s.is_good),
+    )
 
 
 def _summarise(project: Project, spacing: float | None) -> ScanSummary:
