@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 from murkscan.cloud import (
     OUTLIER_RULES,
     Doubtful,
+    Outside,
     SeenCloud,
     SeenThrough,
     Sparse,
@@ -20,7 +21,13 @@ from murkscan.types.profile import Profile
 
 from ..scans import BASELINE, COTANGENT, cylinder, holed, plane, scan, sphere, step
 
-RULES = [*OUTLIER_RULES, Doubtful(0.9), Sparse(max_jump=0.01), SeenThrough(0.1)]
+RULES = [
+    *OUTLIER_RULES,
+    Doubtful(0.9),
+    Sparse(max_jump=0.01),
+    SeenThrough(0.1),
+    Outside((-9.0,) * 3, (9.0,) * 3),
+]
 
 
 def rod(x, y):
@@ -155,3 +162,15 @@ def test_settings_without_sense_are_refused():
         Doubtful(2.0)
     with pytest.raises(InputError, match="clearance must lie between 0 and 1, got 0"):
         SeenThrough(0.0)
+
+
+def test_what_lies_outside_of_the_volume_goes_before_anything_else_is_judged():
+    everything, _ = seen(plane)
+    middle = np.median(everything.cloud.points, axis=0)
+    low, high = tuple((middle - 0.02).tolist()), tuple((middle + 0.02).tolist())
+    inside = np.all(np.abs(everything.cloud.points - middle) <= 0.02, axis=1)
+    found = find_outliers(everything, (Outside(low, high), Sparse()))
+    assert 0 < inside.sum() < len(inside)
+    np.testing.assert_array_equal(found["volume"], ~inside)
+    with pytest.raises(InputError, match="must differ"):
+        Outside(low, low)

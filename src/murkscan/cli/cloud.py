@@ -6,6 +6,8 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from ..errors import InputError
+from ..ui.choices import make_rules
+from .options import MaybePlace
 from .paths import ScanFolder
 from .progress import progress_bars
 from .typed import WORDS
@@ -17,6 +19,7 @@ def cloud(
     export: Annotated[tuple[Path, ...], Parameter(negative=())] = (),
     voxel_mm: float | None = None,
     min_posterior: float = 0.5,
+    volume_m: MaybePlace = None,
     frames: Annotated[bool, Parameter(negative=())] = False,
 ) -> None:
     """Merge the profiles of a scan into one cloud of points.
@@ -33,6 +36,8 @@ def cloud(
         Thin what is exported to one point a voxel of this edge [mm]: means, weighted by sigma.
     min_posterior
         Take out points less probable than this to be the surface.
+    volume_m
+        Leave out what lies outside of this box: two corners X,Y,Z,X,Y,Z in the world [m].
     frames
         Write one cloud a frame for more than 500 frames, too.
     """
@@ -40,7 +45,6 @@ def cloud(
         raise InputError("--voxel-mm thins what is exported; say where to with --export FILE.")
     if voxel_mm is not None and not 0 < voxel_mm < float("inf"):
         raise InputError(f"--voxel-mm must be above 0, got {voxel_mm:g}.")
-    from ..cloud import Doubtful, SeenThrough, Sparse
     from ..project import CLOUD, Project
     from ..survey.cloud import build_cloud
     from ..survey.export import check_export, export_cloud
@@ -49,10 +53,9 @@ def cloud(
     from .summary import print_result
     from .words import tell
 
-    project = Project(out, WORDS.get())
+    project, rules = Project(out, WORDS.get()), make_rules(volume_m, min_posterior=min_posterior)
     for path in export:
         check_export(path)
-    rules = (Doubtful(min_posterior), Sparse(), SeenThrough())
     with progress_bars() as progress:
         if is_merged(project):
             result = project.finished(CLOUD).result

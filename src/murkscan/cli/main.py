@@ -27,6 +27,7 @@ _COMMANDS = {
     "report": "Write a page on how the scan went.",
     "check": "Compare every file of a scan with what was written.",
     "simulate": "Make a recording whose truth is known.",
+    "turntable": "Write the pose log of an object on a turntable.",
     "plan": "Say what a rig will see in a water, before it is built.",
 }
 """Each lies in the file of its name, and is imported when it is called: --help stays instant."""

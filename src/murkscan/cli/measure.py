@@ -12,11 +12,11 @@ from .measure_part import (
     MeshScan,
     Name,
     PartFlags,
-    Place,
     print_measurement,
     read_place,
     read_plane,
 )
+from .options import Place
 
 if TYPE_CHECKING:
     from ..measure import Sample

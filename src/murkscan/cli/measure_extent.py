@@ -3,15 +3,14 @@
 from ..errors import InputError
 from .measure_part import (
     CloudScan,
-    MaybePlace,
     MeshScan,
     Name,
     PartFlags,
-    Place,
     print_measurement,
     read_place,
     read_plane,
 )
+from .options import MaybePlace, Place
 
 
 def step(

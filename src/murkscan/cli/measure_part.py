@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Group, Parameter
 
 from ..errors import InputError
-from ..ui.values import read_numbers
+from ..ui.values import read_box, read_numbers
+from .options import MaybePlace
 from .paths import ScanFolder
 from .words import print_table, say, tell
 
@@ -32,10 +33,6 @@ _MEANING = (
 )
 
 PART = Group("Which part of the scan", sort_key=11)
-Place = Annotated[str, Parameter(allow_leading_hyphen=True)]
-"""Coordinates parted by commas, of which the first may be negative."""
-MaybePlace = Annotated[str | None, Parameter(allow_leading_hyphen=True)]
-"""The same, which may be left out."""
 CloudScan = Annotated[
     ScanFolder, Parameter(help="Folder of the scan, with a finished cloud stage.")
 ]
@@ -70,11 +67,7 @@ class PartFlags:
             return Ball(read_place("--near-m", self.near_m), self.within_mm / 1e3)
         if self.box_m is None:
             return None
-        numbers = read_numbers(self.box_m, 6)
-        if numbers is None:
-            raise InputError(f"--box-m {self.box_m!r} is not X,Y,Z,X,Y,Z in metres.")
-        low, high = map(min, numbers[:3], numbers[3:]), map(max, numbers[:3], numbers[3:])
-        return Box(_three(low), _three(high))
+        return Box(*read_box("--box-m", self.box_m))
 
 
 def read_place(flag: str, text: str) -> tuple[float, float, float]:

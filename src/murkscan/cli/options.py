@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from ..types.trajectory import Trajectory
 
 
+Place = Annotated[str, Parameter(allow_leading_hyphen=True)]
+"""Coordinates parted by commas, of which the first may be negative."""
+MaybePlace = Annotated[str | None, Parameter(allow_leading_hyphen=True)]
+"""The same, which may be left out."""
 MOTION = Group("How the camera moved", sort_key=11)
 READING = Group("How to read the recording", sort_key=12)
 WORK = Group("Who does the work", sort_key=13)

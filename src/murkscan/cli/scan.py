@@ -13,8 +13,10 @@ from ..ui.choices import (
     make_extractor,
     make_mesher,
     make_method,
+    make_rules,
 )
-from .options import ExecutorFlags, MotionFlags, RecordingFlags, Settings
+from ..ui.values import read_box
+from .options import ExecutorFlags, MaybePlace, MotionFlags, RecordingFlags, Settings
 from .paths import RecordingPath, RigFile
 from .progress import progress_bars
 from .typed import WORDS
@@ -34,6 +36,7 @@ def scan(
     method: MethodName = "ray-sheet",
     mesher: MesherName = "grid",
     laser: int = 0,
+    volume_m: MaybePlace = None,
     frames: Annotated[bool, Parameter(negative=())] = False,
 ) -> None:
     """Turn a recording into a measured 3D model: all stages in order.
@@ -58,11 +61,16 @@ def scan(
         The way to make a surface.
     laser
         Number of the laser in the rig whose stripe is followed, from 0.
+    volume_m
+        Leave out of the model what lies outside of this box: two corners X,Y,Z,X,Y,Z in the world
+        [m].
     frames
         Write one cloud a frame for more than 500 frames, too.
     """
     motion.check()
     check_settings(settings)
+    if volume_m is not None:
+        read_box("--volume-m", volume_m)
     executor = work.make()
     with progress_bars() as progress:
         from ..io.rig_toml import load_rig
@@ -79,6 +87,7 @@ def scan(
             method=make_method(method),
             mesher=make_mesher(mesher, ()),
             laser=laser,
+            rules=make_rules(volume_m),
             frames=frames,
             rig_file=rig,
             command=WORDS.get(),

@@ -7,6 +7,7 @@ from .merge import merge_profiles as merge_profiles
 from .outliers import OUTLIER_RULES as OUTLIER_RULES
 from .outliers import find_outliers as find_outliers
 from .outliers import remove_outliers as remove_outliers
+from .outside import Outside as Outside
 from .seen_through import SeenThrough as SeenThrough
 from .sparse import Sparse as Sparse
 from .thinning import thin_cloud as thin_cloud

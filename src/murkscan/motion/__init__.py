@@ -8,3 +8,4 @@ from .base import Direction as Direction
 from .constant_speed import ConstantSpeed as ConstantSpeed
 from .constant_step import ConstantStep as ConstantStep
 from .pose_log import PoseLog as PoseLog
+from .turntable import turn_about_axis as turn_about_axis

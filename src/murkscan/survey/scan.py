@@ -7,6 +7,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from ..capture import AbstractRecording
+from ..cloud import OUTLIER_RULES, AbstractOutlierRule
 from ..distribute import AbstractExecutor
 from ..extract import AbstractExtractor, Murk
 from ..io.rig_toml import as_tables
@@ -37,6 +38,7 @@ def scan(
     method: AbstractTriangulation | None = None,
     mesher: AbstractMesher | None = None,
     laser: int = 0,
+    rules: Sequence[AbstractOutlierRule] = OUTLIER_RULES,
     frames: bool = False,
     rig_file: Path | None = None,
     command: Sequence[str] = (),
@@ -57,6 +59,7 @@ def scan(
         method: The way from pixels to points; ray and sheet unless given.
         mesher: The way to make a surface; the scan's own grid unless given.
         laser: Number of the laser in the rig whose stripe is followed.
+        rules: The reasons to take a point out of the cloud.
         frames: Whether to write one cloud a frame for more than 500 frames, too.
         rig_file: The file of the rig, for what the report says of its calibration.
         command: The words that were typed after `murkscan`, for the report.
@@ -87,7 +90,7 @@ def scan(
         )
         triangulate_stripes(project, rig, method, executor=executor, progress=progress)
         follow_motion(project, motion)
-        build_cloud(project, rig, frames=frames, progress=progress)
+        build_cloud(project, rig, rules=rules, frames=frames, progress=progress)
         build_mesh(project, mesher, progress=progress)
         draw_views(project, progress=progress)
         write_report(project, progress=progress)

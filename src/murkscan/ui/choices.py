@@ -5,8 +5,10 @@ import importlib
 from typing import TYPE_CHECKING, Any, Literal
 
 from ..errors import InputError
+from .values import read_box
 
 if TYPE_CHECKING:
+    from ..cloud import AbstractOutlierRule
     from ..extract import AbstractExtractor
     from ..mesh import AbstractMesher
     from ..triangulate import AbstractTriangulation
@@ -42,6 +44,25 @@ def make_method(name: MethodName) -> "AbstractTriangulation":
 def make_mesher(name: MesherName, settings: tuple[str, ...]) -> "AbstractMesher":
     """Make the mesher of a name, with settings given as `field=value`."""
     return _make("mesh", _MESHERS[name], settings)
+
+
+def make_rules(
+    volume_m: str | None, *, min_posterior: float = 0.5
+) -> "tuple[AbstractOutlierRule, ...]":
+    """Make the reasons to take a point out of a cloud, in the order in which they are asked.
+
+    Args:
+        volume_m: What is wanted, as two corners X,Y,Z,X,Y,Z [m]; None: all of it.
+        min_posterior: Probability to be the surface below which a point goes.
+
+    Raises:
+        InputError: One of them cannot be.
+    """
+    corners = None if volume_m is None else read_box("--volume-m", volume_m)
+    from ..cloud import Doubtful, Outside, SeenThrough, Sparse
+
+    wanted = () if corners is None else (Outside(*corners),)
+    return (Doubtful(min_posterior), *wanted, Sparse(), SeenThrough())
 
 
 def check_settings(settings: tuple[str, ...]) -> None:

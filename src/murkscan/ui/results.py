@@ -19,6 +19,7 @@ _MANY_OUTLIERS = 0.2
 """Share of points taken out from which that is worth one."""
 _CAUSES = {
     "posterior": "too improbable to be the surface",
+    "volume": "outside of the volume that was asked for",
     "density": "that stood alone",
     "visibility": "in front of a surface that was seen through them, or mirrored behind it",
 }
@@ -106,7 +107,8 @@ def _(result: CloudResult) -> tuple[str, ...]:
         for cause, count in result.outliers_by.items()
         if count
     ]
-    if result.outliers > _MANY_OUTLIERS * max(result.points + result.outliers, 1):
+    doubted = result.outliers - result.outliers_by.get("volume", 0)
+    if doubted > _MANY_OUTLIERS * max(result.points + doubted, 1):
         lines.append(
             "that is much: the water may be too murky here, or something else glitters; look at "
             "extract/overlay"

@@ -4,6 +4,8 @@ import math
 
 from ..errors import InputError
 
+Corner = tuple[float, float, float]
+
 
 def read_numbers(text: str, count: int) -> list[float] | None:
     """Read finite numbers that commas part; None where they are no numbers, or not so many."""
@@ -12,6 +14,22 @@ def read_numbers(text: str, count: int) -> list[float] | None:
     except ValueError:
         return None
     return numbers if len(numbers) == count and all(map(math.isfinite, numbers)) else None
+
+
+def read_box(flag: str, text: str) -> tuple[Corner, Corner]:
+    """Read the lowest and the highest corner of a box from any two opposite ones [m].
+
+    Raises:
+        InputError: They are no numbers.
+    """
+    numbers = read_numbers(text, 6)
+    if numbers is None:
+        raise InputError(
+            f"{flag} {text!r} is not X,Y,Z,X,Y,Z: give two corners of a box in metres."
+        )
+    pairs = [sorted(pair) for pair in zip(numbers[:3], numbers[3:], strict=True)]
+    (x, x_high), (y, y_high), (z, z_high) = pairs
+    return (x, y, z), (x_high, y_high, z_high)
 
 
 def read_start_time(text: str) -> float:
