@@ -9,7 +9,7 @@ from murkscan.types.cloud_part import CloudPart
 
 RECORDING = RecordingRecord("dive.mkv", "1", (640, 480), is_timed=True, fields_per_picture=1)
 SCAN = ScanRecord(versions={}, recording=RECORDING, rig={})
-MERGED = ScanRecord(versions={}, recording=None, rig={}, merged=("a", "b"))
+MERGED = ScanRecord(versions={}, recording=None, rig={})
 
 
 def finish(

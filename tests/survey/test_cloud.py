@@ -24,11 +24,12 @@ from murkscan.project import (
     PartNote,
     Project,
     TriangulateResult,
+    find_frame_times,
+    find_trajectory,
 )
 from murkscan.survey.cloud import build_cloud
 from murkscan.survey.export import export_cloud
 from murkscan.survey.merge import merge_passes
-from murkscan.survey.merged import load_moments, load_way
 from murkscan.survey.mesh import export_mesh
 from murkscan.survey.profile_blocks import cut_blocks
 from murkscan.types.pose import Pose
@@ -202,6 +203,35 @@ def test_two_passes_become_one_in_the_frame_of_the_first(project, tmp_path, clou
     first, other = (one.frames for one in result.passes)
     assert first[1] + 2 < other[0]
     assert other == (int(moved.frame.min()), int(moved.frame.max()))
+    # A point keeps its name: its pass, and in that its frame, scan line and branch.
+    told = Project(out).finished(CLOUD).result
+    np.testing.assert_array_equal(told.number_passes(moved.frame), 1)
+    np.testing.assert_array_equal(moved.frame - other[0] + told.passes[1].first_frame, second.frame)
+    np.testing.assert_array_equal(moved.scan_line, second.scan_line)
+
+
+def test_a_merged_folder_stands_for_its_passes(project, tmp_path, cloud):
+    for name, spacing in (("second", 1.1e-3), ("third", 1.2e-3)):
+        again = drifted(scan_cloud(waves, noise=1e-4, spacing=spacing))[0]
+        as_project(tmp_path / name, again)
+    paths = [project.root, tmp_path / "second", tmp_path / "third"]
+    merge_passes(paths[:2], tmp_path / "two")
+    grown = merge_passes([tmp_path / "two", paths[2]], tmp_path / "grown")
+    assert [one.path for one in grown.passes] == [str(path) for path in paths]
+    at_once = merge_passes(paths, tmp_path / "three")
+    assert grown.passes == at_once.passes
+
+
+def test_a_merge_is_made_anew_when_a_pass_has_changed_and_not_before(project, tmp_path, cloud):
+    as_project(tmp_path / "second", drifted(cloud)[0])
+    paths, out = [project.root, tmp_path / "second"], tmp_path / "out"
+    merge_passes(paths, out)
+    made = (out / "cloud/cloud.ply").stat().st_mtime_ns
+    merge_passes(paths, out)
+    assert (out / "cloud/cloud.ply").stat().st_mtime_ns == made
+    as_project(tmp_path / "second", drifted(cloud, seed=1)[0])
+    merge_passes(paths, out)
+    assert (out / "cloud/cloud.ply").stat().st_mtime_ns > made
 
 
 def followed(project, attitude):
@@ -237,7 +267,7 @@ def test_merged_passes_keep_the_way_of_their_cameras(tmp_path, cloud):
     followed(as_project(tmp_path / "b", second), attitude)
     merge_passes([tmp_path / "a", tmp_path / "b"], tmp_path / "out")
     merged = Project(tmp_path / "out")
-    way, moments = load_way(merged), load_moments(merged)
+    way, moments = find_trajectory(merged), find_frame_times(merged)
     assert set(np.unique(merged.load_cloud().frame)) == set(moments.frame)
     other = way.at(way.times[np.isin(moments.frame, np.unique(cloud.frame), invert=True)])
     turned = Rotation.from_quat(other.quaternions[0], scalar_first=True) * attitude.inv()
@@ -245,7 +275,7 @@ def test_merged_passes_keep_the_way_of_their_cameras(tmp_path, cloud):
     # With a cloud of which no poses are known, the whole has none.
     as_project(tmp_path / "c", cloud)
     merge_passes([tmp_path / "a", tmp_path / "c"], tmp_path / "out")
-    assert load_way(merged) is None
+    assert find_trajectory(merged) is None
 
 
 def test_a_plain_wall_says_what_it_leaves_open(tmp_path):
@@ -340,7 +370,7 @@ def test_the_commands_merge_export_and_go_on(project, tmp_path, capsys, cloud):
         (["cloud", out, "--voxel-mm", "3"], "--export FILE"),
         (["cloud", out, "--export", "a.docx"], "no suffix of a cloud"),
         (["triangulate", out], "was merged from other scans and has no recording"),
-        (["report", out], "was merged from other scans and has no recording"),
+        (["report", out, "--spacing-mm", "2"], "whose own reports judge gaps and speed"),
     ):
         assert run(wrong) == 2
         assert says in capsys.readouterr().err

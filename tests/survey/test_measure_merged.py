@@ -75,6 +75,24 @@ def test_every_measure_is_taken_and_has_an_interval(merged, what, capsys):
         assert "alignment" in capsys.readouterr().out
 
 
+def test_the_report_tells_of_each_pass_and_of_their_disagreement(merged):
+    assert run(["view", str(merged)]) == 0
+    assert run(["report", str(merged)]) == 0
+    told = json.loads((merged / "report" / "report.json").read_text("utf-8"))
+    assert [one["path"] for one in told["merged"]] == ["../first.ply", "../second.ply"]
+    assert told["merged"][0]["shift_mm"] is None
+    # It lay (0.4, -0.3, 1) mm off; the ball shows all three directions, the wall the last one best.
+    assert told["merged"][1]["shift_mm"] == pytest.approx([-0.4, 0.3, -1.0], abs=0.1)
+    (pair,) = told["disagreement"]
+    assert pair["passes"] == [0, 1]
+    assert pair["share"] > 0.7
+    assert abs(pair["mean_mm"]) < pair["rms_mm"] < pair["within_95_percent_mm"] < 0.2
+    page = (merged / "report" / "index.html").read_text("utf-8")
+    for words in ("../first.ply", "stays where it is", "Disagreement of the passes"):
+        assert words in page
+    assert run(["check", str(merged)]) == 0
+
+
 def test_the_radius_of_a_ball_seen_by_both_passes_lies_in_its_interval(merged):
     low, high = measured(merged, "sphere")["quantities"]["radius_m"]["interval_95"]
     assert low < 0.05 < high

@@ -45,11 +45,9 @@ def cloud(
         raise InputError("--voxel-mm thins what is exported; say where to with --export FILE.")
     if voxel_mm is not None and not 0 < voxel_mm < float("inf"):
         raise InputError(f"--voxel-mm must be above 0, got {voxel_mm:g}.")
-    from ..project import CLOUD, Project
+    from ..project import CLOUD, Project, is_merged, load_scan_rig
     from ..survey.cloud import build_cloud
     from ..survey.export import check_export, export_cloud
-    from ..survey.merged import is_merged
-    from ..survey.scan_rig import load_scan_rig
     from .summary import print_result
     from .words import tell
 

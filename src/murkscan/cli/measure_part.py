@@ -115,23 +115,23 @@ def print_measurement(
 
 def _tell_common(out: Path, found: "Measurement") -> None:
     """Say what the common part lacks."""
-    from ..project import Project
-    from ..survey.merged import is_merged
+    from ..project import Project, is_merged
 
-    common = [quantity.sigma_common for quantity in found.quantities]
-    if not is_merged(Project(out)):
-        if None in common:
+    project = Project(out)
+    if not is_merged(project):
+        if any(quantity.sigma_common is None for quantity in found.quantities):
             say(
                 "The rig file states no covariance: the common part is unknown, and not in ±95%; "
                 "murkscan calibrate finds it."
             )
-    elif any(common):
+        return
+    from ..project.merged import list_unstated
+
+    if unstated := list_unstated(project):
         say(
-            "The common part of a merged cloud is that of its passes' alignment; what their rigs "
-            "share is not in ±95%: measure one of the passes to see it."
+            f"Of {', '.join(unstated)} no rig with a covariance is known: the common part is that "
+            "of the passes' alignment and of the other rigs."
         )
-    else:
-        say("The cloud says nothing of the errors that its points share: ±95% lacks them.")
 
 
 def _row(quantity: "Quantity") -> tuple[str, ...]:

@@ -14,9 +14,8 @@ def motion(out: ScanFolder, *, flags: MotionFlags = MotionFlags()) -> None:
         Folder of the scan, with a finished extract stage.
     """
     flags.check()
-    from ..project import EXTRACT, Project
+    from ..project import EXTRACT, Project, load_scan_rig
     from ..survey.motion import follow_motion
-    from ..survey.scan_rig import load_scan_rig
     from .summary import print_remarks, print_result
 
     project = Project(out, WORDS.get())

@@ -23,8 +23,7 @@ def triangulate(
         The way from pixels to points.
     """
     executor = work.make()
-    from ..project import Project
-    from ..survey.scan_rig import load_scan_rig
+    from ..project import Project, load_scan_rig
     from ..survey.triangulate import triangulate_stripes
     from .summary import print_result
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import small_gicp
+from jaxtyping import Float
 from scipy.spatial import cKDTree
 
 from ..errors import Degenerate, InputError
@@ -22,6 +23,23 @@ _COARSE = 4.0
 _ROUNDS = 20
 _SETTLED = 1e-4
 """Step, in spacings, below which the last fit has settled."""
+
+
+@dataclass(frozen=True, eq=False)
+class Pairs:
+    """Where two surfaces were found to agree; one a row."""
+
+    points: Points
+    """Of the source, where they are laid, in the target's frame [m]."""
+    normals: Directions
+    """Of both surfaces, in the target's frame."""
+    pull: Float[np.ndarray, "6 n"]
+    """Turn [rad] and shift [m] that answer a metre by which the source leaves the target there."""
+
+    @classmethod
+    def none(cls) -> "Pairs":
+        """Make no pairs."""
+        return cls(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros((6, 0)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,11 +63,25 @@ class Alignment:
     """Root mean square distance of the surfaces at these pairs, along the normal [m]."""
     start: Pose = field(default_factory=Pose.identity)
     """What was taken for target_from_source to begin with."""
+    pairs: Pairs = field(default_factory=Pairs.none)
+    """Where it was told from."""
 
     @property
     def correction(self) -> Pose:
         """Give what alignment has changed, in the target's frame: after `start`."""
         return self.target_from_source @ self.start.inverse()
+
+    def answer(self, apart: Float[np.ndarray, "n 3 modes"]) -> Float[np.ndarray, "6 modes"]:
+        """Tell how the source would have been laid, had errors moved it off the target.
+
+        Args:
+            apart: By how much each error moves the source off the target at the pairs [m].
+
+        Returns:
+            The change of a turn about `centre` [rad] and of a shift [m] with each error.
+        """
+        along = np.einsum("nj,njm->nm", self.pairs.normals, apart)
+        return self.pairs.pull @ along
 
     def sigma_along(self, points: Points, directions: Directions) -> Scalars:
         """Give the standard deviation that the alignment leaves at aligned points [m].
@@ -150,6 +182,7 @@ def align_surfaces(
         num_matches=len(fit.residuals),
         rms=float(np.sqrt(np.mean(fit.residuals**2))),
         start=start,
+        pairs=Pairs(fit.points, fit.jacobian[:, 3:], fit.pull()),
     )
 
 

@@ -55,6 +55,8 @@ class AlignmentFit:
     """Middle of the pairs [m], in the target's frame."""
     length: float
     """Turns are counted in what they move at this distance [m]."""
+    points: Points
+    """Where the source's points of the pairs are laid [m]."""
     residuals: Scalars
     """Distance of the source in front of the target at each pair [m]."""
     weights: Scalars
@@ -96,6 +98,7 @@ class AlignmentFit:
         return cls(
             centre,
             length,
+            pairs.points,
             pairs.residuals,
             pairs.weights,
             jacobian,
@@ -129,6 +132,17 @@ class AlignmentFit:
         covariance = self.determined @ covariance @ self.determined.T
         unit = np.diag(np.repeat([1 / self.length, 1.0], 3))
         return unit @ covariance @ unit
+
+    def pull(self) -> Float[np.ndarray, "6 n"]:
+        """Give the turn [rad] and the shift [m] that answer a metre by which each pair comes apart.
+
+        What errors common to a whole surface do to its place: least squares make of it the motion
+        that brings the pairs together again.
+        """
+        own = self.jacobian @ self.determined
+        along = -(own * self.weights[:, None] / self.information).T
+        motion = self.determined @ along
+        return np.concatenate([motion[:3] / self.length, motion[3:]])
 
     def _motion_of(self, pose: Pose) -> Motion:
         turn = Rotation.from_matrix(pose.rotation).as_rotvec()

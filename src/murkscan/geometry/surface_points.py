@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..errors import InputError, NotEnoughData
-from ..types.arrays import Directions, Mask, Points, Scalars
+from ..types.arrays import Directions, Indices, Mask, Points, Scalars
 from ..types.cloud import PointCloud
 from ..types.mesh import Mesh
 from .voxels import VoxelGrid
@@ -15,6 +15,8 @@ _WANTED = 20_000
 """Points that a surface is thinned to unless told: more make alignment slower, hardly better."""
 _MOST = 200_000
 """Points of a mesh beyond which a wanted spacing is not kept."""
+_SEARCHED = 200_000
+"""Points of a cloud, about, among which the nearest is looked for."""
 _FEWEST = 30
 """Points below which there is no surface to align."""
 _AROUND = 9
@@ -108,6 +110,12 @@ class SurfacePoints:
         normals = np.asarray(shape.face_normals)[faces[first]]
         weights = np.ones(len(first))
         return cls(_level(grid.points[first], normals, weights), normals, weights, spacing)
+
+
+def nearest_in_cloud(cloud: PointCloud, places: Points) -> Indices:
+    """Find the point nearest to each place, among at least 200,000 of a cloud or all of it."""
+    step = max(len(cloud) // _SEARCHED, 1)
+    return step * np.asarray(cKDTree(cloud.points[::step]).query(places)[1])
 
 
 def _require(count: int) -> None:

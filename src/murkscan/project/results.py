@@ -3,9 +3,15 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from ..types.arrays import Indices, SignedFrameNumbers
 from ..types.background import Attenuation
+
+if TYPE_CHECKING:
+    from ..geometry.alignment import Alignment
 
 Skipped = tuple[int, int, str]
 """First frame that could not be read, how many, and why."""
@@ -89,12 +95,39 @@ class AlignmentResult:
     rms: float = field(metadata={"unit": "m"})
     """Root mean square distance of the matches [m]."""
 
+    @classmethod
+    def from_alignment(cls, alignment: "Alignment") -> "AlignmentResult":
+        """Put an alignment into numbers."""
+        from ..geometry.alignment_words import motion_of_overlap
+
+        shift, turn = motion_of_overlap(alignment)
+        return cls(
+            rotation=_rows(alignment.target_from_source.rotation),
+            translation=tuple(alignment.target_from_source.translation.tolist()),
+            centre=tuple(alignment.centre.tolist()),
+            shift_of_centre=tuple(shift.tolist()),
+            turn=tuple(turn.tolist()),
+            covariance_of_turn_and_shift=_rows(alignment.covariance),
+            open=tuple(
+                OpenDirectionResult(str(one), tuple(one.axis.tolist()), tuple(one.through.tolist()))
+                for one in alignment.open_directions
+            ),
+            overlap=alignment.overlap,
+            matches=alignment.num_matches,
+            rms=alignment.rms,
+        )
+
+
+def _rows(matrix: np.ndarray) -> tuple[tuple[float, ...], ...]:
+    return tuple(tuple(row) for row in matrix.tolist())
+
 
 @dataclass(frozen=True)
 class PassResult:
     """What became of one pass of a merged cloud."""
 
     path: str
+    """As it was given."""
     frames: tuple[int, int]
     """First and last of its frames, by the merged cloud's count."""
     left_out: int
@@ -105,6 +138,13 @@ class PassResult:
     """How it was laid on those before it; None: it stays where it was."""
     laid_on: tuple[float, ...]
     """Share of its matches in each pass that it was laid on."""
+    first_frame: int = 0
+    """Its own number of the first of its frames."""
+    points: int = 0
+    """Its points, before any were thinned out."""
+    answers: tuple[tuple[float, ...], ...] = ()
+    """Change of its turn about the centre [rad] and of its shift [m] with each error of all rigs
+    and alignments; see `MergedErrors`. None for a pass that stays."""
 
 
 @dataclass(frozen=True)
@@ -118,6 +158,11 @@ class CloudResult:
     """How many of them for each cause."""
     passes: tuple[PassResult, ...] = ()
     """The scans that a merged cloud was made of."""
+
+    def number_passes(self, frame: SignedFrameNumbers) -> Indices:
+        """Tell in which pass of a merged cloud each frame of its count was taken."""
+        first = [one.frames[0] for one in self.passes]
+        return np.searchsorted(first, frame, side="right") - 1
 
 
 @dataclass(frozen=True)
@@ -212,5 +257,19 @@ class ScanRecord:
     """The record of the rig's calibration."""
     settings: Mapping[str, Any] = field(default_factory=dict)
     """The Choice of each kind."""
-    merged: tuple[str, ...] | None = None
+    passes: tuple["PassRecord", ...] = ()
     """The passes of a merged cloud."""
+
+
+@dataclass(frozen=True)
+class PassRecord:
+    """A pass, as it was when it was merged."""
+
+    path: str
+    """Its folder or file, relative to the merged folder, with forward slashes."""
+    identity: str
+    """Changes with what its cloud and its poses hold."""
+    scan: ScanRecord | None = None
+    """What was scanned, with what; None for a cloud of another program."""
+    carries_mount: bool = False
+    """Whether its poses came through its rig's mount."""

@@ -2,11 +2,19 @@
 
 from .belief import Belief as Belief
 from .calibrated import CalibrationStep as CalibrationStep
+from .calibrated import read_steps as read_steps
 from .coverage import Coverage as Coverage
 from .coverage import map_coverage as map_coverage
 from .directions import SurfaceDirections as SurfaceDirections
+from .gathering import measure_cloud as measure_cloud
 from .histogram import Histogram as Histogram
 from .html import as_html as as_html
+from .merged import MergedSummary as MergedSummary
+from .merged import ReportedPair as ReportedPair
+from .merged import ReportedPass as ReportedPass
+from .merged import ReportedRig as ReportedRig
+from .merged import merged_as_html as merged_as_html
+from .merged import merged_as_json as merged_as_json
 from .plain import as_json as as_json
 from .reach import Reach as Reach
 from .recorded import Model as Model
@@ -27,3 +35,5 @@ from .timeline import Timeline as Timeline
 from .timeline import frame_statistics as frame_statistics
 from .timeline import make_timeline as make_timeline
 from .trust import AT_95 as AT_95
+from .trust import Trust as Trust
+from .trust import judge_trust as judge_trust

@@ -9,7 +9,6 @@ from ..types.arrays import Scalars
 from ..types.cloud import PointCloud
 from ..types.laser import Axis
 from ..types.profile import Profile
-from ..types.rig import Rig
 from ..types.trajectory import Trajectory
 from .belief import LEVELS, Belief
 from .even_sample import EvenSample
@@ -58,11 +57,19 @@ def gather(profiles: Iterable[Profile], axis: Axis, trajectory: Trajectory | Non
 
 def measure_cloud(
     cloud: PointCloud | Iterable[PointCloud] | None,
-    rig: Rig,
     num_outliers: int,
     mesh_size: tuple[int, int],
+    *,
+    is_stated: bool,
 ) -> tuple[Model, Trust | None]:
-    """Tell how large a cloud is and how far to trust its points; None without points."""
+    """Tell how large a cloud is and how far to trust its points; None without points.
+
+    Args:
+        cloud: The points, all at once or in blocks.
+        num_outliers: Points that were taken out of it.
+        mesh_size: Vertices and triangles of the surface.
+        is_stated: Whether the rig states how well it is known.
+    """
     blocks = [cloud] if isinstance(cloud, PointCloud) else cloud or ()
     num_points, ends = 0, []
     sigma, common = EvenSample(), EvenSample()
@@ -78,4 +85,4 @@ def measure_cloud(
     low, high = np.min([end[0] for end in ends], axis=0), np.max([end[1] for end in ends], axis=0)
     x, y, z = (high - low).tolist()
     model = Model(num_points, num_outliers, *mesh_size, (x, y, z))
-    return model, judge_trust(sigma.values(), common.values(), rig)
+    return model, judge_trust(sigma.values(), common.values(), is_stated=is_stated)

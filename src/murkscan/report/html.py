@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from ..page import Block, Facts, Gallery, Note, Picture, Section, Table, format_cell, render_page
 from .charts import depth_chart, points_chart, signal_chart
 from .distribution_charts import sigma_distribution, signal_distribution
-from .recorded import Shown
+from .recorded import Model, Shown
 from .sections import (
     belief_rows,
     calibration_blocks,
@@ -39,7 +39,7 @@ def as_html(summary: ScanSummary) -> str:
     ]
     views = [shown for shown in summary.pictures if not shown.is_frame]
     if views:
-        sections.append(Section("Pictures", [_gallery(views, is_first_large=True)]))
+        sections.append(Section("Pictures", [gallery(views, is_first_large=True)]))
     if summary.coverage is not None:
         sections.append(
             Section(
@@ -56,20 +56,21 @@ def as_html(summary: ScanSummary) -> str:
             Section("Over time", _charts(summary)),
         ]
     if summary.trust is not None:
-        sections.append(Section("Uncertainty at 68 and 95 %", _uncertainty(summary.trust)))
-    sections.append(Section("Calibration", calibration_blocks(summary)))
+        sections.append(Section("Uncertainty at 68 and 95 %", uncertainty_blocks(summary.trust)))
+    calibrated = calibration_blocks(summary.recorded.calibration, summary.steps)
+    sections.append(Section("Calibration", calibrated))
     if summary.recorded.skips:
         sections.append(Section("Skipped frames", _skips(summary)))
     frames = [shown for shown in summary.pictures if shown.is_frame]
     if frames:
-        sections.append(Section("Frames", [_gallery(frames)]))
+        sections.append(Section("Frames", [gallery(frames)]))
     return render_page("Scan report", sections + _record(summary), subtitle=summary.recorded.name)
 
 
 def _record(summary: ScanSummary) -> list[Section]:
     """Give all that is needed to do the scan again."""
     sections = [
-        Section("To do it again", repeat_blocks(summary.recorded)),
+        Section("To do it again", repeat_blocks(summary.recorded.commands)),
         Section("Rig", [Table(rig_rows(summary.rig))]),
         Section("Settings", [Note(_UNITS), Table(list(setting_rows(summary.settings)))]),
         Section("Versions", [Table(list(summary.versions.items()))]),
@@ -80,7 +81,8 @@ def _record(summary: ScanSummary) -> list[Section]:
     return sections
 
 
-def _gallery(pictures: Sequence[Shown], *, is_first_large: bool = False) -> Gallery:
+def gallery(pictures: Sequence[Shown], *, is_first_large: bool = False) -> Gallery:
+    """Show pictures side by side."""
     return Gallery([Picture(shown.path, shown.caption) for shown in pictures], is_first_large)
 
 
@@ -98,9 +100,7 @@ def _headline(summary: ScanSummary) -> list[Block]:
         facts.append((format_cell(model.outliers), "outliers taken out"))
     if summary.num_points:
         facts.append((describe_range(summary.depth), "depth range"))
-    if model.size is not None:
-        size = " × ".join(f"{1e3 * edge:.0f}" for edge in model.size)
-        facts.append((size, "mm along x, y and z"))
+    facts += size_facts(model)
     if summary.coverage is not None:
         share = summary.coverage.covered / summary.coverage.mapped
         facts.append((f"{100 * share:.1f} %", "of the surface between the profiles covered"))
@@ -110,6 +110,13 @@ def _headline(summary: ScanSummary) -> list[Block]:
         facts.append((f"{water.effective:.2g}", told))
     odd = [Note(remark, "warning") for remark in summary.recorded.remarks]
     return [*_verdict(summary), *odd, Facts(facts)]
+
+
+def size_facts(model: Model) -> list[tuple[str, str]]:
+    """Say how large a cloud is, where it has points."""
+    if model.size is None:
+        return []
+    return [(" × ".join(f"{1e3 * edge:.0f}" for edge in model.size), "mm along x, y and z")]
 
 
 def _verdict(summary: ScanSummary) -> list[Block]:
@@ -169,7 +176,8 @@ def _spreads(summary: ScanSummary) -> Table:
     return Table(rows, head=("", "smallest", "5 %", "median", "95 %", "largest"))
 
 
-def _uncertainty(trust: Trust) -> list[Block]:
+def uncertainty_blocks(trust: Trust) -> list[Block]:
+    """Show both parts of the points' uncertainty at two levels."""
     parts = [("independent", trust.independent), ("common", trust.common), ("both", trust.total)]
     rows = [
         (name, *(_at(part, share) for share in ("median", "high")), *_at_95(part))

@@ -24,7 +24,7 @@ def as_json(summary: ScanSummary) -> dict[str, Any]:
         "signal_grey_levels": as_plain(summary.signal, 1.0),
         "depth_mm": as_plain(summary.depth, 1e3),
         "sigma_mm": as_plain(summary.sigma, 1e3),
-        "uncertainty_mm": None if summary.trust is None else _as_uncertainty(summary.trust),
+        "uncertainty_mm": None if summary.trust is None else as_uncertainty(summary.trust),
         "spacing_along_stripe_mm": as_plain(summary.along, 1e3),
         "spacing_along_motion_mm": as_plain(summary.across, 1e3),
         "rig": dict(rig_rows(summary.rig)),
@@ -89,7 +89,7 @@ def _as_columns(timeline: Timeline, *, is_timed: bool) -> dict[str, Any]:
     }
 
 
-def _as_uncertainty(trust: Trust) -> dict[str, Any]:
+def as_uncertainty(trust: Trust) -> dict[str, Any]:
     """Give the spread over the points of each part, at 68 % (1 σ) and at 95 %."""
     parts = {"independent": trust.independent, "common": trust.common, "total": trust.total}
     return {

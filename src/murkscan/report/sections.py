@@ -1,7 +1,8 @@
 """The parts of the page that a client reads: what was scanned, how well, and how to do it again."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import datetime
+from typing import Any
 
 from ..page import Block, Code, Note, Table, format_cell
 from .belief import Belief, name_classes
@@ -104,32 +105,32 @@ def belief_rows(belief: Belief) -> list[tuple[str, int, float]]:
     ]
 
 
-def calibration_blocks(summary: ScanSummary) -> list[Block]:
-    """Say what the rig's file tells of its calibration."""
-    recorded = summary.recorded
-    if recorded.calibration is None:
+def calibration_blocks(
+    calibration: Mapping[str, Any] | None, steps: Sequence[CalibrationStep]
+) -> list[Block]:
+    """Say what the rig's file tells of its calibration: the record, and its steps."""
+    if calibration is None:
         return [Note("The rig's file is not known here, so neither is its calibration.", "warning")]
-    if not summary.steps:
+    if not steps:
         text = (
             "The rig's file holds no record of a calibration: camera and laser are taken as they "
             "stand there, and how far that is true cannot be told. murkscan calibrate writes one."
         )
         return [Note(text, "warning")]
     rows = [
-        (step.name, _age(step), step.evidence, step.verdict or "not recorded")
-        for step in summary.steps
+        (step.name, _age(step), step.evidence, step.verdict or "not recorded") for step in steps
     ]
     head = ("step", "made", "evidence", "verdict")
-    return [*_calibration_verdict(summary.steps), Table(rows, head=head)]
+    return [*_calibration_verdict(steps), Table(rows, head=head)]
 
 
-def repeat_blocks(recorded: Recorded) -> list[Block]:
+def repeat_blocks(commands: Sequence[str]) -> list[Block]:
     """Say how to do the same again."""
-    if not recorded.commands:
+    if not commands:
         return [Note("Made from Python, with the settings listed here.")]
     return [
         Note("What was typed; with the same recording, rig file and version it gives the same."),
-        Code(recorded.commands),
+        Code(commands),
     ]
 
 

@@ -128,7 +128,9 @@ def summarise(
     values = dict(gathered.values)
     reach = Reach.from_points(values.pop("range"), values["signal"], noise=noise)
     spreads = {name: Spread.from_values(numbers) for name, numbers in values.items()}
-    model, trust = measure_cloud(cloud, rig, num_outliers, mesh_size)
+    model, trust = measure_cloud(
+        cloud, num_outliers, mesh_size, is_stated=bool(rig.covariance.names)
+    )
     needed = wanted if wanted is not None else spreads["along"].median
     return ScanSummary(
         recorded=recorded,

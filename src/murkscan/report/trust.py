@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..types.arrays import Scalars
-from ..types.rig import Rig
 from .spread import Spread
 
 AT_95 = 1.96
@@ -25,14 +24,14 @@ class Trust:
     """Both together."""
 
 
-def judge_trust(sigma: Scalars, common: Scalars, rig: Rig) -> Trust:
+def judge_trust(sigma: Scalars, common: Scalars, *, is_stated: bool) -> Trust:
     """Give the standard deviations of a cloud's points.
 
     Args:
         sigma: The independent part of each point [m].
         common: The part that the points share [m].
-        rig: The rig; one without a covariance knows nothing of that part.
+        is_stated: Whether anything is known of that part: of a rig without a covariance nothing is.
     """
     total = np.hypot(sigma, common)
-    stated = Spread.from_values(common) if rig.covariance.names else None
+    stated = Spread.from_values(common) if is_stated else None
     return Trust(Spread.from_values(sigma), stated, Spread.from_values(total))

@@ -17,7 +17,7 @@ from ..extract import AbstractExtractor, GrayGravity
 from ..io.rig_toml import load_rig
 from ..optics.length import Length, measure_length
 from ..optics.uncertainty import common_shifts
-from ..project import Project
+from ..project import Project, load_moving_rig
 from ..types.arrays import Points, Vector
 from ..types.profile import Profile
 from ..types.rig import Rig
@@ -26,7 +26,6 @@ from .board_photos import BoardPhotos
 from .board_stripes import StripeFinder
 from .board_views import find_boards
 from .progress import Progress, silent
-from .scan_rig import load_scan_rig, moving_rig
 
 _FARTHEST = 0.01
 """Distance from a given place within which a point of the scan must lie [m]."""
@@ -128,7 +127,7 @@ def check_in_scan(
             "A known length must be above 0 and its deviation not below, got "
             f"{known * 1e3:g} ± {known_sigma * 1e3:g} mm."
         )
-    rig = moving_rig(project, load_scan_rig(project))
+    rig = load_moving_rig(project)
     profile = Profile.concatenate(list(project.load_placed_parts()))
     trajectory = project.load_trajectory()
     in_world = trajectory.transform(profile.points, profile.time)

@@ -7,7 +7,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..cloud import OUTLIER_RULES, AbstractOutlierRule, SeenCloud, find_outliers, merge_profiles
-from ..project import CLOUD, EXTRACT, MOTION, TRIANGULATE, CloudResult, Project, describe
+from ..project import (
+    CLOUD,
+    EXTRACT,
+    MOTION,
+    TRIANGULATE,
+    CloudResult,
+    Project,
+    as_it_moves,
+    describe,
+)
 from ..types.cloud import empty_cloud
 from ..types.cloud_part import CloudPart
 from ..types.laser import Axis
@@ -16,7 +25,6 @@ from ..types.trajectory import Trajectory
 from .common_part import spread_common
 from .profile_blocks import BLOCK, ProfileBlock, cut_blocks
 from .progress import Progress, silent
-from .scan_rig import moving_rig
 from .stage_runner import run_stage
 
 FRAME_FILES = 500
@@ -46,12 +54,13 @@ def build_cloud(
         MissingResult: An earlier stage has not been finished.
         DeviceError: The disk is full.
     """
-    sources = project.finished(TRIANGULATE), project.finished(MOTION)
-    rig, extracted = moving_rig(project, rig), project.finished(EXTRACT).result
+    triangulated, moved = project.finished(TRIANGULATE), project.finished(MOTION)
+    rig = as_it_moves(rig, carries_mount=moved.result.carries_mount)
+    extracted = project.finished(EXTRACT).result
     stage = project.stage(
         CLOUD,
         settings={"frames": frames, "rules": describe(tuple(rules))},
-        inputs={"triangulate": sources[0].digest, "motion": sources[1].digest}
+        inputs={"triangulate": triangulated.digest, "motion": moved.digest}
         | {"covariance": describe(rig.covariance)},
     )
 

@@ -4,9 +4,9 @@ from dataclasses import dataclass, replace
 
 from ..errors import Degenerate
 from ..geometry.alignment import Alignment
+from ..geometry.alignment_words import describe_alignment, turn_round
 from ..project import AlignmentResult, Project
 from ..view import Model
-from .alignment_words import alignment_result, describe_alignment, turn_round
 from .reference import lay_on, load_reference
 from .shown import choose_points, folder_of, has_surface, load_model
 
@@ -68,7 +68,7 @@ def compare_models(
     second = second.moved(alignment.target_from_source, first.views)
     words = describe_alignment(alignment, whose=first.name)
     relation = f"{second.name} was laid on {first.name}: {words}."
-    return Compared([first, second], relation, alignment_result(alignment))
+    return Compared([first, second], relation, AlignmentResult.from_alignment(alignment))
 
 
 def _lay(other: Project, project: Project) -> Alignment:

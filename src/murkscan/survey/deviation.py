@@ -19,7 +19,7 @@ from ..measure import (
     require_dent_sizes,
     sigma_of_points,
 )
-from ..project import Project
+from ..project import Project, find_trajectory
 from ..types.dent import Dent
 from ..types.deviation import Deviation
 from ..types.measurement import Measurement
@@ -29,7 +29,6 @@ from ..view.render import render
 from ..view.values import SignedValues
 from ..view.views import standard_views
 from .measured import as_plain, measure_file, save_measurement
-from .merged import load_way
 from .reference import Reference
 from .sample import load_sample
 
@@ -136,7 +135,7 @@ def _save_points(project: Project, name: str, sample: Sample, deviation: Deviati
 def _draw(project: Project, name: str, surface: Mesh, sample: Sample, deviation: Deviation) -> None:
     """Draw the scan's surface, coloured by its deviation."""
     colours = SignedValues(sample.cloud.points, deviation.values)
-    for view in standard_views(load_way(project)):
+    for view in standard_views(find_trajectory(project)):
         if view.name in _PICTURES:
             picture = render(surface, view, colours=colours)
             write_image(measure_file(project, f"{name}-{view.name}", "png"), picture)

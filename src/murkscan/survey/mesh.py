@@ -8,11 +8,10 @@ from scipy.spatial.transform import Rotation
 
 from ..io.mesh_files import check_mesh_suffix, save_mesh
 from ..mesh import AbstractMesher, AbstractPaint, ByDepth, close_holes, decimate
-from ..project import CLOUD, MESH, MeshResult, Project, describe
+from ..project import CLOUD, MESH, MeshResult, Project, describe, find_trajectory, is_merged
 from ..types.cloud import PointCloud
 from ..types.mesh import Mesh
 from .export import require_outside_stages
-from .merged import load_way, split_passes
 from .progress import Progress, silent
 from .stage_runner import run_stage
 
@@ -63,7 +62,7 @@ def build_mesh(
     def prepare() -> tuple[Mesh, MeshResult]:
         cloud = project.load_cloud()
         painted = replace(asked, paint=_towards(asked.paint, project))
-        return _finish(mesher.mesh_passes(split_passes(project, cloud)), cloud, painted)
+        return _finish(mesher.mesh_passes(_split(project, cloud)), cloud, painted)
 
     def make(made: tuple[Mesh, MeshResult]) -> MeshResult:
         mesh, result = made
@@ -103,6 +102,16 @@ def check_mesh_export(path: Path) -> None:
     require_outside_stages(path)
 
 
+def _split(project: Project, cloud: PointCloud) -> list[PointCloud]:
+    """Give the points of each pass of a merged cloud, those without any left out; else all."""
+    if not is_merged(project):
+        return [cloud]
+    merged = project.finished(CLOUD).result
+    owner = merged.number_passes(cloud.frame)
+    parts = [cloud[owner == number] for number in range(len(merged.passes))]
+    return [part for part in parts if len(part)]
+
+
 def _finish(mesh: Mesh, cloud: PointCloud, finish: Finish) -> tuple[Mesh, MeshResult]:
     closed = left = None
     if finish.largest_hole is not None:
@@ -125,9 +134,9 @@ def _towards(paint: AbstractPaint | None, project: Project) -> AbstractPaint | N
     """Count depth in the mean direction in which the camera looked, where that is known."""
     if not isinstance(paint, ByDepth):
         return paint
-    way = load_way(project)
-    if way is None:
+    trajectory = find_trajectory(project)
+    if trajectory is None:
         return paint
-    attitudes = Rotation.from_quat(way.quaternions, scalar_first=True)
+    attitudes = Rotation.from_quat(trajectory.quaternions, scalar_first=True)
     x, y, z = (float(part) for part in attitudes.mean().apply(np.array([0.0, 0.0, 1.0])))
     return ByDepth((x, y, z))

@@ -5,10 +5,9 @@ import numpy as np
 from ..capture import AbstractRecording
 from ..errors import InputError
 from ..motion import AbstractMotion
-from ..project import EXTRACT, MOTION, MotionResult, Project, describe
+from ..project import EXTRACT, MOTION, MotionResult, Project, describe, load_recording
 from ..types.trajectory import Trajectory
 from .progress import silent
-from .scan_rig import load_recording_record
 from .stage_runner import run_stage
 
 
@@ -29,7 +28,7 @@ def follow_motion(project: Project, motion: AbstractMotion) -> MotionResult:
     times = project.load_frame_times()
 
     def prepare() -> Trajectory:
-        recording = load_recording_record(project)
+        recording = load_recording(project)
         check_times(recording.path, motion, is_timed=recording.is_timed)
         pictures = times.frame.astype(float) / recording.fields_per_picture
         return motion.follow(times.time, pictures)

@@ -2,7 +2,7 @@
 
 import json
 from datetime import UTC, datetime
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any
 
 from ..io.rig_toml import read_tables
@@ -21,7 +21,7 @@ def read_calibration(rig_file: Path) -> dict[str, Any]:
     return json.loads(json.dumps(record, default=str))
 
 
-def name_recording(path: Path) -> str:
+def name_recording(path: PurePath) -> str:
     """Name a recording by its file or folder; one that is called frames by what it belongs to."""
     above = path.parent.name
     return above if path.name == "frames" and above not in ("", "..") else path.name

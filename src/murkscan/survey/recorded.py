@@ -4,11 +4,10 @@ import shlex
 from datetime import UTC, datetime
 from pathlib import Path
 
-from ..project import EXTRACT, MOTION, STAGES, Project, ScanRecord
+from ..project import EXTRACT, MOTION, STAGES, Project, ScanRecord, is_merged, load_recording
 from ..report import Recorded
 from ..types.frame_times import FrameTimes
 from .origin import name_recording
-from .scan_rig import load_recording_record
 
 _SINCE = 1e8
 """A log's time above this counts seconds since 1970; below it, a clock of its own [s]."""
@@ -21,7 +20,7 @@ def tell_recording(project: Project, scan: ScanRecord) -> Recorded:
         project: A scan with all stages up to view finished.
         scan: Its scan.json.
     """
-    recording, extracted = load_recording_record(project), project.finished(EXTRACT).result
+    recording, extracted = load_recording(project), project.finished(EXTRACT).result
     motion = project.finished(MOTION).result
     return Recorded(
         name=name_recording(Path(recording.path)),
@@ -58,6 +57,7 @@ def when_began(frames: FrameTimes, start: float) -> datetime | None:
 
 def list_commands(project: Project) -> list[str]:
     """List the commands that made the stages, in order; none of what was run from Python."""
-    typed = [project.finished(kind).record.command for kind in STAGES[:-1]]
+    made = STAGES[2:-1] if is_merged(project) else STAGES[:-1]
+    typed = [project.finished(kind).record.command for kind in made]
     typed.append(tuple(project.command))
     return [shlex.join(["murkscan", *words]) for words in dict.fromkeys(typed) if words]

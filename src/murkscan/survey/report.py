@@ -1,6 +1,7 @@
 """Tell how a scan went: one page for people, one file for programs."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 from ..errors import InputError
@@ -15,11 +16,25 @@ from ..project import (
     Project,
     ReportResult,
     digest,
+    is_merged,
+    load_scan_rig,
 )
-from ..report import AT_95, ScanSummary, Shown, as_html, as_json, summarise, with_coverage
+from ..report import (
+    AT_95,
+    CalibrationStep,
+    MergedSummary,
+    ScanSummary,
+    Shown,
+    as_html,
+    as_json,
+    merged_as_html,
+    merged_as_json,
+    summarise,
+    with_coverage,
+)
+from .merged_report import summarise_merged
 from .progress import Progress, silent
 from .recorded import tell_recording
-from .scan_rig import load_recording_record, load_scan_rig
 from .stage_runner import run_stage
 
 
@@ -34,11 +49,15 @@ def write_report(
         progress: Told when it begins and ends.
 
     Raises:
-        InputError: The spacing is not above 0, or the cloud was merged from other scans.
+        InputError: The spacing is not above 0, or is given for a cloud that was merged from others.
         MissingResult: The view stage has not been finished.
         DeviceError: The disk is full.
     """
-    load_recording_record(project)
+    if spacing is not None and is_merged(project):
+        raise InputError(
+            f"{project.root} was merged from other scans, whose own reports judge gaps and speed; "
+            "give --spacing-mm to `murkscan report` on each of those."
+        )
     if spacing is not None and not 0 < spacing < math.inf:
         raise InputError(f"The wanted spacing must be above 0 mm, got {1e3 * spacing:g} mm.")
     told = replace(project.load_scan(), started=None)
@@ -48,11 +67,16 @@ def write_report(
         inputs={"view": project.finished(VIEW).digest, "scan": digest(as_plain(told))},
     )
 
-    def make(summary: ScanSummary) -> ReportResult:
+    def make(summary: ScanSummary | MergedSummary) -> ReportResult:
+        if isinstance(summary, MergedSummary):
+            project.save_report(merged_as_json(summary), merged_as_html(summary))
+            return _merged_in_short(summary)
         project.save_report(as_json(summary), as_html(summary))
         return _in_short(summary)
 
-    def prepare() -> ScanSummary:
+    def prepare() -> ScanSummary | MergedSummary:
+        if is_merged(project):
+            return summarise_merged(project, _pictures(project))
         return _summarise(project, spacing)
 
     return run_stage(project, stage, make, prepare=prepare, progress=progress)
@@ -72,8 +96,26 @@ def _in_short(summary: ScanSummary) -> ReportResult:
         largest_gap=None if worst is None or not missing[worst] else worst,
         half_width=None if typical is None else AT_95 * typical,
         is_common_known=trust is not None and trust.common is not None,
-        steps_with_advice=tuple(s.name for s in summary.steps if s.verdict and not s.is_good),
+        steps_with_advice=_with_advice(summary.steps),
     )
+
+
+def _merged_in_short(summary: MergedSummary) -> ReportResult:
+    trust, steps = summary.trust, [step for one in summary.rigs for step in one.steps]
+    typical = None if trust is None else trust.total.median
+    return ReportResult(
+        frames=sum(one.frames[1] - one.frames[0] + 1 for one in summary.passes),
+        skipped=0,
+        frames_without_stripe=0,
+        points=summary.model.points,
+        half_width=None if typical is None else AT_95 * typical,
+        is_common_known=not summary.unstated,
+        steps_with_advice=_with_advice(steps),
+    )
+
+
+def _with_advice(steps: Sequence[CalibrationStep]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(one.name for one in steps if one.verdict and not one.is_good))
 
 
 def _summarise(project: Project, spacing: float | None) -> ScanSummary:
@@ -106,7 +148,7 @@ def _pictures(project: Project) -> list[Shown]:
         Shown(f"../view/{name}.png", name.replace("-", ", coloured by "))
         for name in project.finished(VIEW).result.pictures
     ]
-    found = [
+    found = [  # none where passes were merged
         Shown(f"../extract/overlay/{name}.png", _caption(name), is_frame=True)
         for name in project.find_overlays()
     ]

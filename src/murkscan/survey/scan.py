@@ -13,12 +13,11 @@ from ..extract import AbstractExtractor, Murk
 from ..io.rig_toml import as_tables
 from ..mesh import AbstractMesher, GridMesh
 from ..motion import AbstractMotion
-from ..project import Project, RecordingRecord, ScanRecord, describe
+from ..project import Project, RecordingRecord, ScanRecord, describe, is_merged, load_recording
 from ..triangulate import AbstractTriangulation, RaySheet
 from ..types.rig import Rig
 from .cloud import build_cloud
 from .extract import check_recording, extract_recording
-from .merged import require_recording
 from .mesh import build_mesh
 from .motion import check_motion, follow_motion
 from .origin import read_calibration, when_written
@@ -141,7 +140,8 @@ def begin_scan(
         settings={"laser": laser, **chosen},
     )
     with project.hold():
-        require_recording(project)
+        if is_merged(project):
+            load_recording(project)  # says what to do
         project.save_scan(record)
 
 

@@ -3,9 +3,8 @@
 import numpy as np
 
 from ..optics.uncertainty import common_shifts
-from ..project import EXTRACT, Project
+from ..project import EXTRACT, Project, load_moving_rig
 from ..view import ShiftField, choose_fairly, fit_shift_field
-from .scan_rig import load_scan_rig, moving_rig
 
 _TRACED = 3000
 """Points that stand for all: the shifts vary slowly."""
@@ -18,7 +17,7 @@ def trace_shift_field(project: Project) -> ShiftField | None:
     Raises:
         MissingResult: The motion stage has not been finished.
     """
-    rig = moving_rig(project, load_scan_rig(project))
+    rig = load_moving_rig(project)
     if not rig.covariance.names:
         return None
     profile = project.load_profile()

@@ -8,11 +8,10 @@ from ..errors import InputError
 from ..io.checksum import mark_file
 from ..io.deviation_files import load_deviation_ply
 from ..io.json_files import load_json
-from ..project import CLOUD, MESH, Project
+from ..project import CLOUD, MESH, Project, find_frame_times, find_trajectory
 from ..types.cloud import PointCloud
 from ..view import Layer, Model, choose_fairly, model_of_scan
 from .measured import measure_file
-from .merged import load_moments, load_way
 from .origin import name_recording
 from .shift_field import trace_shift_field
 
@@ -41,8 +40,8 @@ def load_model(project: Project, *, most: int, deviation: str = DEVIATION) -> Mo
         choose_points(project, most),
         num_points=total,
         mesh=project.load_mesh() if has_surface(project) else None,
-        trajectory=load_way(project),
-        frames=load_moments(project),
+        trajectory=find_trajectory(project),
+        frames=find_frame_times(project),
         is_timed=recording is not None and recording.is_timed,
         shift_field=None if recording is None else trace_shift_field(project),
         most=most,

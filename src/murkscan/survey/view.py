@@ -5,11 +5,10 @@ from pathlib import Path
 from ..errors import InputError
 from ..io.video import writing_video
 from ..page import Gallery, Note, Picture, Section, render_page
-from ..project import MESH, VIEW, Project, ViewResult
+from ..project import MESH, VIEW, Project, ViewResult, find_trajectory
 from ..types.mesh import Mesh
 from ..view import MOST, PICTURES, TURN, draw_pictures, draw_turn, render_viewer
 from .compared import Compared, compare_models
-from .merged import load_way
 from .progress import Progress, silent
 from .shown import DEVIATION, deviation_digest, has_surface, load_model, title_of
 from .stage_runner import run_stage
@@ -94,7 +93,7 @@ def film_scan(project: Project, path: Path, *, progress: Progress = silent) -> N
     if path.suffix.lower() != ".mp4":
         raise InputError(f"A film is written as .mp4, not as {path.name}.")
     project.finished(MESH)
-    pictures = draw_turn(project.load_mesh(), load_way(project), size=_FILM)
+    pictures = draw_turn(project.load_mesh(), find_trajectory(project), size=_FILM)
     with writing_video(path, _FILM, rate=_RATE, codec="h264", crf=20, is_colour=True) as write:
         for number, picture in enumerate(pictures):
             write(picture, number / _RATE)
@@ -122,7 +121,7 @@ def _page(title: str, shown: Compared) -> str:
 def _draw(project: Project, surface: Mesh, progress: Progress) -> list[str]:
     names: list[str] = []
     progress("view", 0, len(PICTURES))
-    for name, picture in draw_pictures(surface, load_way(project)):
+    for name, picture in draw_pictures(surface, find_trajectory(project)):
         project.save_picture(name, picture)
         names.append(name)
         progress("view", len(names), len(PICTURES))

@@ -1,7 +1,7 @@
 """All points of a scan in one frame."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from .arrays import (
     SignedFrameNumbers,
     SmallNumbers,
 )
+from .pose import Pose
 
 FARTHEST = 1e11
 """Coordinates beyond which nothing lies, in whatever unit: the Earth's girth is 4e10 mm."""
@@ -59,6 +60,11 @@ class PointCloud:
         placed = np.abs(self.points).max(axis=1, initial=0) < FARTHEST  # not true of NaN
         measured = (self.sigma >= 0) & (self.sigma_common >= 0)
         return placed & measured & np.isfinite(self.normals).all(axis=1)
+
+    def carry(self, target_from_world: Pose) -> "PointCloud":
+        """Lay the points elsewhere."""
+        normals = (self.normals @ target_from_world.rotation.T).astype(np.float32)
+        return replace(self, points=target_from_world @ self.points, normals=normals)
 
     @classmethod
     def concatenate(cls, clouds: Sequence["PointCloud"]) -> "PointCloud":

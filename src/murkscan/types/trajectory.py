@@ -76,6 +76,19 @@ class Trajectory:
         rotations = Rotation.from_quat(poses.quaternions, scalar_first=True).as_matrix()
         return np.einsum("nij,nj->ni", rotations[which], points) + poses.positions[which]
 
+    def to_camera(self, points: Points, times: Scalars) -> Points:
+        """Carry points of the world [m] to the camera; the inverse of `transform`.
+
+        Raises:
+            InputError: A time lies outside the trajectory.
+        """
+        if len(times) == 0:
+            return points
+        moments, which = np.unique(times, return_inverse=True)
+        poses = self.at(moments)
+        rotations = Rotation.from_quat(poses.quaternions, scalar_first=True).as_matrix()
+        return np.einsum("nji,nj->ni", rotations[which], points - poses.positions[which])
+
     def follow_mount(self, source_from_camera: Pose) -> "Trajectory":
         """Give world_from_camera where this is world_from_source: a vehicle with a mount."""
         rotations = Rotation.from_quat(self.quaternions, scalar_first=True)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from murkscan.geometry.alignment import Alignment
-from murkscan.survey.alignment_words import describe_alignment
+from murkscan.geometry.alignment_words import describe_alignment
 from murkscan.types.pose import Pose
 
 

@@ -1,13 +1,13 @@
-"""An alignment in words for the terminal, and in numbers for stage.json."""
+"""An alignment in words, and the other way round."""
 
 from dataclasses import replace
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from ..geometry.alignment import Alignment
-from ..project import AlignmentResult, OpenDirectionResult
+from ..types.arrays import Vector
 from ..types.pose import Pose
+from .alignment import Alignment, Pairs
 
 
 def describe_alignment(alignment: Alignment | None, *, whose: str = "it") -> str:
@@ -19,7 +19,7 @@ def describe_alignment(alignment: Alignment | None, *, whose: str = "it") -> str
     """
     if alignment is None:
         return "stays where it is"
-    shift, turn = _motion(alignment)
+    shift, turn = motion_of_overlap(alignment)
     sigma = np.sqrt(np.diag(alignment.covariance))
     words = (
         f"moved {_with_sigma(shift * 1e3, sigma[3:] * 1e3)} mm along x, y, z and turned "
@@ -45,40 +45,12 @@ def turn_round(alignment: Alignment) -> Alignment:
             for one in alignment.open_directions
         ),
         start=Pose.identity(),
+        pairs=Pairs.none(),
     )
 
 
-def alignment_result(alignment: Alignment | None) -> AlignmentResult | None:
-    """Put an alignment into numbers for stage.json; None for the pass that stays."""
-    if alignment is None:
-        return None
-    shift, turn = _motion(alignment)
-    pose = alignment.target_from_source
-    return AlignmentResult(
-        rotation=_rows(pose.rotation),
-        translation=tuple(pose.translation.tolist()),
-        centre=tuple(alignment.centre.tolist()),
-        shift_of_centre=tuple(shift.tolist()),
-        turn=tuple(turn.tolist()),
-        covariance_of_turn_and_shift=_rows(alignment.covariance),
-        open=tuple(
-            OpenDirectionResult(
-                str(direction), tuple(direction.axis.tolist()), tuple(direction.through.tolist())
-            )
-            for direction in alignment.open_directions
-        ),
-        overlap=alignment.overlap,
-        matches=alignment.num_matches,
-        rms=alignment.rms,
-    )
-
-
-def _rows(matrix: np.ndarray) -> tuple[tuple[float, ...], ...]:
-    return tuple(tuple(row) for row in matrix.tolist())
-
-
-def _motion(alignment: Alignment) -> tuple[np.ndarray, np.ndarray]:
-    """Give how far the middle of the overlap moves [m], and the turn about it [rad]."""
+def motion_of_overlap(alignment: Alignment) -> tuple[Vector, Vector]:
+    """Compute how far the middle of the overlap moves [m], and the turn about it [rad]."""
     correction = alignment.correction
     before = correction.inverse() @ alignment.centre[None]
     turn = Rotation.from_matrix(correction.rotation).as_rotvec()

@@ -1,0 +1,168 @@
+"""How the points of several passes move together with the errors of their rigs and alignments.
+
+A rig's errors move all passes that it saw, each along its own cameras. A pass that is laid on
+others by their overlap gives way to that: it turns and shifts as a whole, by what the errors of
+both sides bring apart there, and by the error of the alignment itself.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Float
+from scipy.linalg import block_diag
+
+from ..geometry.stripe_blur import Sight
+from ..types.arrays import Indices, Vector
+from ..types.cloud import PointCloud
+from ..types.rig import Rig
+from ..types.trajectory import Trajectory
+from .seen_points import find_pixels, look_back, shift_points
+from .uncertainty import Shifts, error_modes
+
+Moves = Float[np.ndarray, "6 parameters"]
+
+
+@dataclass(frozen=True, eq=False)
+class SeenPass:
+    """How a pass was seen, in the merged world."""
+
+    rig: Rig
+    """Its rig as it moves."""
+    trajectory: Trajectory
+    """world_from_camera, with the merged cloud's frame numbers for times."""
+    key: str
+    """The same for passes of one rig, which share its errors."""
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """How a pass moves as a whole with every error."""
+
+    centre: Vector
+    """About which it turns [m]."""
+    moves: Moves
+    """Turn [rad] and shift [m] with each parameter of `MergedErrors.basis`."""
+
+
+@dataclass(frozen=True, eq=False)
+class MergedErrors:
+    """The independent errors of a merged cloud, and how its points move with them."""
+
+    passes: Sequence[SeenPass | None]
+    """None for a pass of which neither rig nor poses are known."""
+    answers: Sequence[Answer | None]
+    """One a pass; None for one that stays where it is."""
+
+    @classmethod
+    def of_passes(cls, passes: Sequence[SeenPass | None]) -> "MergedErrors":
+        """Begin with passes of which none is laid on another."""
+        return cls(passes, [None] * len(passes))
+
+    @cached_property
+    def basis(self) -> Float[np.ndarray, "parameters modes"]:
+        """Change of each parameter with each independent error, at one standard deviation.
+
+        The parameters are those of each rig, in the order of its covariance, and six numbers of
+        each pass's alignment.
+        """
+        known = {one.key: one.rig.covariance for one in self.passes if one is not None}
+        modes = [error_modes(covariance) for covariance in known.values()]
+        return block_diag(*modes, np.eye(6 * len(self.passes)))
+
+    def shifts(self, owner: Indices, cloud: PointCloud) -> Shifts:
+        """Compute how far points move with each independent error, in the merged world [m].
+
+        Args:
+            owner: Number of the pass of each point.
+            cloud: The points, with the merged cloud's frame numbers.
+        """
+        shifts = np.zeros((len(cloud), 3, self.basis.shape[1]))
+        for number in np.unique(owner).tolist():
+            mine = owner == number
+            shifts[mine] = self._shift_pass(number, cloud[mine])
+        return shifts
+
+    @property
+    def is_stated(self) -> bool:
+        """Whether a rig or an alignment says how far it may be off."""
+        rigs = any(one is not None and one.rig.covariance.names for one in self.passes)
+        return rigs or any(one is not None for one in self.answers)
+
+    def look_back(self, owner: Indices, cloud: PointCloud) -> Sight | None:
+        """Find from where each point was seen; None where a pass does not know it.
+
+        The arguments are those of `shifts`.
+        """
+        columns = np.zeros((3, len(cloud), 3))
+        for number in np.unique(owner).tolist():
+            one, mine = self.passes[number], owner == number
+            if one is None:
+                return None
+            some = cloud[mine]
+            times = some.frame.astype(float)
+            seen = look_back(some.points, some.laser, times, one.trajectory, one.rig)
+            columns[:, mine] = seen.rays, seen.along, seen.light
+        return Sight(*columns)
+
+    def place(self, number: int, seen: SeenPass | None) -> "MergedErrors":
+        """Say where a pass lies, of which only its own world was known."""
+        passes = list(self.passes)
+        passes[number] = seen
+        return replace(self, passes=passes)
+
+    def lay(
+        self,
+        number: int,
+        centre: Vector,
+        covariance: Float[np.ndarray, "6 6"],
+        answer: Float[np.ndarray, "6 modes"],
+    ) -> "MergedErrors":
+        """Add how a pass was laid on those before it.
+
+        Args:
+            number: The pass.
+            centre: About which it was turned [m].
+            covariance: Of its turn [rad] and shift [m].
+            answer: Its turn and shift with what each independent error brings apart.
+        """
+        size, axes = np.linalg.eigh(covariance)
+        scale = np.linalg.norm(self.basis, axis=1)[:, None]
+        scale = np.where(scale > 0, scale, 1.0)
+        moves = answer @ np.linalg.pinv(self.basis / scale) / scale.T
+        first = len(self.basis) - 6 * (len(self.passes) - number)
+        moves[:, first : first + 6] += axes * np.sqrt(np.maximum(size, 0.0))
+        answers = list(self.answers)
+        answers[number] = Answer(centre, moves)
+        return replace(self, answers=answers)
+
+    def _shift_pass(self, number: int, cloud: PointCloud) -> Shifts:
+        one, answer = self.passes[number], self.answers[number]
+        shifts = np.zeros((len(cloud), 3, self.basis.shape[1]))
+        if one is not None and one.rig.covariance.names:
+            times = cloud.frame.astype(float)
+            pixels = find_pixels(cloud.points, times, one.trajectory, one.rig)
+            own = _complete(shift_points(pixels, cloud.laser, times, one.trajectory, one.rig))
+            first = self._first_mode(one.key)
+            shifts[:, :, first : first + own.shape[2]] = own
+        if answer is not None:
+            turns, moves = np.split(answer.moves @ self.basis, 2)
+            arms = (cloud.points - answer.centre)[:, None]
+            shifts += np.cross(turns.T, arms).transpose(0, 2, 1) + moves
+        return shifts
+
+    def _first_mode(self, key: str) -> int:
+        first = 0
+        for one in {one.key: one for one in self.passes if one is not None}.values():
+            if one.key == key:
+                break
+            first += error_modes(one.rig.covariance).shape[1]
+        return first
+
+
+def _complete(shifts: Shifts) -> Shifts:
+    """Let a point that its pixel just misses move as the others do in the mean."""
+    seen = np.isfinite(shifts).all(axis=(1, 2))
+    mean = shifts[seen].mean(axis=0) if seen.any() else 0.0
+    return np.where(seen[:, None, None], shifts, mean)

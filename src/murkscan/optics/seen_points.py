@@ -1,0 +1,73 @@
+"""Points in the world as the camera of a scan saw them: from where, and moved by which errors."""
+
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial.transform import Rotation
+
+from ..geometry.stripe_blur import Sight
+from ..types.arrays import Pixels, Points, Scalars, SmallNumbers
+from ..types.rig import Rig
+from ..types.trajectory import Trajectory
+from .sheet import light_across
+from .uncertainty import Shifts, common_shifts
+from .view import project
+from .water import refractive_index
+
+
+def look_back(
+    points: Points, laser: SmallNumbers, times: Scalars, trajectory: Trajectory, rig: Rig
+) -> Sight:
+    """Find from where each point was seen, and where its light came from.
+
+    Args:
+        points: Points in the world [m].
+        laser: Number of the laser that lit each.
+        times: When each was seen [s].
+        trajectory: world_from_camera.
+        rig: The rig.
+    """
+    cameras = trajectory.transform(np.zeros_like(points), times)
+    rays = points - cameras
+    rays /= np.maximum(np.linalg.norm(rays, axis=1, keepdims=True), 1e-12)
+    index = refractive_index(rig.water, rig.wavelength)
+    stripes, lights = np.zeros_like(points), np.zeros_like(points)
+    for number in np.unique(laser).tolist():
+        mine = laser == number
+        stripes[mine] = (0.0, 1.0, 0.0) if rig.lasers[number].axis == "x" else (1.0, 0.0, 0.0)
+        lights[mine] = light_across(rig.lasers[number], index)
+    along, light = (trajectory.transform(way, times) - cameras for way in (stripes, lights))
+    return Sight(rays, along, light)
+
+
+def find_pixels(points: Points, times: Scalars, trajectory: Trajectory, rig: Rig) -> Pixels:
+    """Find the pixel at which each point was seen; the arguments are those of `look_back`."""
+    index = refractive_index(rig.water, rig.wavelength)
+    return project(rig.camera, trajectory.to_camera(points, times), index)
+
+
+def shift_points(
+    pixels: Pixels, laser: SmallNumbers, times: Scalars, trajectory: Trajectory, rig: Rig
+) -> Shifts:
+    """Compute how far points move with each independent error of their rig, in the world [m].
+
+    Args:
+        pixels: Where each point was seen [px].
+        laser: Number of the laser that lit each.
+        times: When each was seen [s].
+        trajectory: world_from_camera.
+        rig: The rig as it moves: with its mount only where the poses came through it.
+
+    Returns:
+        Shifts at one standard deviation; NaN where a pixel sees no point.
+    """
+    parts = {n: common_shifts(pixels[laser == n], rig, n) for n in np.unique(laser).tolist()}
+    modes = max((part.shape[2] for part in parts.values()), default=0)
+    shifts: Float[np.ndarray, "n 3 modes"] = np.zeros((len(pixels), 3, modes))
+    for number, part in parts.items():
+        shifts[laser == number] = part
+    moments, which = np.unique(times, return_inverse=True)
+    attitudes = Rotation.from_quat(trajectory.at(moments).quaternions, scalar_first=True)
+    world_from_rig = attitudes.as_matrix()
+    if rig.vehicle_from_camera is not None:
+        world_from_rig = world_from_rig @ rig.vehicle_from_camera.rotation.T
+    return world_from_rig[which] @ shifts

@@ -1,0 +1,193 @@
+"""The passes of a merged cloud where they lie: their points, their poses, and what each is."""
+
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import InputError, MissingResult
+from ..io.checksum import mark_file
+from ..io.cloud_files import check_cloud_suffix, iterate_cloud_file
+from ..io.values import as_plain
+from ..optics.merged_errors import SeenPass
+from ..types.cloud import PointCloud
+from ..types.pose import Pose
+from ..types.trajectory import Trajectory
+from .describe import digest
+from .folder import Project
+from .kinds import CLOUD, MOTION
+from .merged import load_pass_rig, rig_key
+from .results import PassRecord
+from .scanned import find_frame_times, find_trajectory, is_merged
+
+_SAMPLE = 2_000_000
+"""Points of a pass, about, that are looked at to align it."""
+_GAP = 1000
+"""Frame numbers between two passes, so that none of their profiles count as neighbours."""
+_LAST_FRAME = 2**31 - 1
+"""The highest number of a frame that a cloud holds."""
+
+
+def expand_merged(paths: Sequence[Path]) -> Iterator[Path]:
+    """Put the passes of a merged folder in its place, so that all errors are traced anew.
+
+    One that was imported from a single cloud of another program stays as it is.
+    """
+    for path in paths:
+        passes: Sequence[PassRecord] = ()
+        if path.is_dir() and is_merged(project := Project(path)):
+            passes = project.load_scan().passes
+        if len(passes) > 1 or any(one.scan is not None for one in passes):
+            yield from (Path(os.path.normpath(path / one.path)) for one in passes)
+        else:
+            yield path
+
+
+@dataclass(frozen=True)
+class PassSource:
+    """The folder of a scan, or a cloud of another program."""
+
+    path: Path
+
+    def blocks(self) -> Iterator[PointCloud]:
+        """Read its points."""
+        if self.path.is_dir():
+            return Project(self.path).iterate_cloud()
+        return iterate_cloud_file(self.path)
+
+    def as_record(self, out: Path) -> PassRecord:
+        """Say what it is, for the merged folder.
+
+        Raises:
+            MissingResult: There is no such folder or file, or it has no finished cloud.
+            InputError: It is no cloud's file.
+        """
+        if not self.path.exists():
+            raise MissingResult(f"{self.path} does not exist; give a scan's folder or a cloud.")
+        path = _relative(self.path, out)
+        if not self.path.is_dir():
+            check_cloud_suffix(self.path)
+            return PassRecord(path, mark_file(self.path).blake2b)
+        project = Project(self.path)
+        stages, carries_mount = [project.finished(CLOUD).record], False
+        with suppress(MissingResult):
+            moved = project.finished(MOTION)
+            stages.append(moved.record)
+            carries_mount = moved.result.carries_mount
+        identity = digest([[one.key.digest, as_plain(one.files)] for one in stages])
+        return PassRecord(path, identity, project.load_scan(), carries_mount)
+
+    def trajectory(
+        self, first_frame: int, frames: tuple[int, int], world_from_pass: Pose
+    ) -> Trajectory | None:
+        """Read the poses at its frames, their merged numbers for times; None where it has none.
+
+        Args:
+            first_frame: Its own number of the first of the frames.
+            frames: The first and the last by the merged cloud's count.
+            world_from_pass: Where it is laid.
+        """
+        if not self.path.is_dir():
+            return None
+        project = Project(self.path)
+        try:
+            known, all_frames = find_trajectory(project), find_frame_times(project)
+        except MissingResult:
+            return None
+        if known is None or all_frames is None:
+            return None
+        numbers = all_frames.frame.astype(np.int64) + (frames[0] - first_frame)
+        inside = (numbers >= frames[0]) & (numbers <= frames[1])
+        poses = known.at(all_frames.time[inside]).carry(world_from_pass)
+        return replace(poses, times=numbers[inside].astype(float))
+
+
+def _relative(path: Path, out: Path) -> str:
+    try:
+        return Path(os.path.relpath(path.resolve(), out.resolve())).as_posix()
+    except ValueError:  # another drive
+        return path.resolve().as_posix()
+
+
+@dataclass(frozen=True)
+class NumberedPass:
+    """A pass and how its points are numbered."""
+
+    source: PassSource
+    record: PassRecord
+    count: int
+    """Points that can be."""
+    left_out: int
+    """Those that cannot."""
+    low: int
+    """First of its frames that has points, by its own count."""
+    high: int
+    """The last one."""
+    first: int = 0
+    """The first one by the merged cloud's count."""
+
+    @property
+    def frames(self) -> tuple[int, int]:
+        """First and last frame by the merged cloud's count."""
+        return self.first, self.first + self.high - self.low
+
+    def blocks(self, pose: Pose) -> Iterator[PointCloud]:
+        """Read its points where a pose lays them; points that cannot be are left out."""
+        for block in self.source.blocks():
+            sound = block[block.is_sound()]
+            frame = sound.frame.astype(np.int64) + (self.first - self.low)
+            yield replace(sound, frame=frame.astype(np.int32)).carry(pose)
+
+    def sample(self) -> PointCloud:
+        """Read about two million of its points, as they lie."""
+        step = max(self.count // _SAMPLE, 1)
+        return PointCloud.concatenate([block[::step] for block in self.blocks(Pose.identity())])
+
+    def see(self, pose: Pose) -> SeenPass | None:
+        """Tell how it was seen; None where its rig or its poses are not known."""
+        rig = load_pass_rig(Project(self.source.path), self.record)
+        trajectory = self.source.trajectory(self.low, self.frames, pose)
+        if rig is None or trajectory is None:
+            return None
+        return SeenPass(rig, trajectory, rig_key(self.record))
+
+
+def look_at(source: PassSource, record: PassRecord) -> NumberedPass:
+    """Count the points of a pass, and find its first and last frame.
+
+    Raises:
+        InputError: It has no points.
+        FormatError: It is damaged.
+    """
+    count = total = 0
+    low, high = _LAST_FRAME, -_LAST_FRAME
+    for block in source.blocks():
+        sound = block[block.is_sound()]
+        count, total = count + len(sound), total + len(block)
+        if len(sound):
+            low, high = min(low, int(sound.frame.min())), max(high, int(sound.frame.max()))
+    if count == 0:
+        why = f": all {total:,} have no place, sigma or normal that can be" if total else ""
+        raise InputError(f"{source.path} has no points{why}; leave it out.")
+    return NumberedPass(source, record, count, total - count, low, high)
+
+
+def number_passes(passes: Sequence[NumberedPass]) -> list[NumberedPass]:
+    """Set the frames of the passes apart.
+
+    Raises:
+        InputError: There are not enough numbers for the frames of all.
+    """
+    numbered, following = list[NumberedPass](), 0
+    for one in passes:
+        if following + one.high - one.low > _LAST_FRAME:
+            raise InputError(
+                f"{one.source.path} numbers its frames from {one.low} to {one.high}, for which "
+                "there is no room; remove its column frame."
+            )
+        numbered.append(replace(one, first=following))
+        following += one.high - one.low + _GAP
+    return numbered
