@@ -34,8 +34,8 @@ def go_on_beside(ridges: Ridges, first: Weights, second: Weights) -> Marks:
     marks = np.zeros(ridges.positions.shape, bool)
     line, which = np.nonzero(second > 0.5)
     taken = np.nonzero(first > 0.5)
-    places = np.stack([taken[0], ridges.positions[taken]], axis=1)
-    beside = np.stack([line, ridges.positions[line, which]], axis=1)
+    places = np.stack([taken[0], ridges.straight[taken]], axis=1)
+    beside = np.stack([line, ridges.straight[line, which]], axis=1)
     off = np.abs(np.diff(beside, axis=0))
     cuts = np.flatnonzero((off[:, 0] > _GAP) | (off[:, 1] > _STEP)) + 1
     for run in np.split(np.arange(len(line)), cuts):

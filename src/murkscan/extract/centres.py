@@ -12,12 +12,11 @@ from .._kernels.join_centres import join_centres
 from .._kernels.stripe_fit import fit_stripes, spread_skirts
 from ..types.arrays import Indices, Mask, Scalars
 from ..types.background import Noise, StripeShape
+from .matched_filter import SKIRT
 from .plateaus import measure_at
 from .ridges import PLATEAU, Marks, Ridges
 from .scan_lines import ScanLines
 
-SKIRT = 2.5
-"""Width of the skirt near the core, as a multiple of the core's."""
 _WIDTH_SPREAD, _SKIRT_SPREAD = 0.15, 0.1
 """Spreads of the priors on a stripe's width (of its logarithm) and on its skirt's share."""
 _REACH = 8.0
@@ -227,10 +226,16 @@ def join_frames(near: Mapping[int, Centres]) -> Centres:
     groups = [near[distance] for distance in distances]
     starts = np.cumsum([0] + [len(group) for group in groups])
     first = starts[distances.index(0)]
+    lines = [group.scan_line + own.lines.offset(group.lines)[1] for group in groups]
     joined = join_centres(
-        np.concatenate([group.scan_line + own.lines.offset(group.lines)[1] for group in groups]),
+        np.concatenate(lines),
         np.repeat(np.array(distances, float), np.diff(starts)),
-        np.concatenate([group.position for group in groups]),
+        np.concatenate(
+            [
+                group.position - own.lines.even_wall(at)
+                for group, at in zip(groups, lines, strict=True)
+            ]
+        ),
         np.concatenate([group.sigma for group in groups]),
         starts,
         first,
@@ -238,7 +243,8 @@ def join_frames(near: Mapping[int, Centres]) -> Centres:
         _REACH,
         _ROUGH,
     )
-    return replace(own, position=joined[:, 0], sigma=joined[:, 1])
+    wall = own.lines.even_wall(own.scan_line)
+    return replace(own, position=wall + joined[:, 0], sigma=joined[:, 1])
 
 
 def doubt_wide(centres: Centres) -> Centres:

@@ -26,8 +26,9 @@ _FAINT, _FULL = 4.5, (2.5, 5.5)
 _PERSISTENT = (0.3, 0.6)
 """Share of sure ridges that the next frame of the same rows has, too, over which frames come to
 count at all."""
-_END = -8.0
-"""Logarithm of the likelihood ratio of a stripe's blur beyond its end."""
+_END = -12.0
+"""Logarithm of the likelihood ratio of a stripe's blur beyond its end, which stays over frames as the
+stripe does: its height, up to e^6 times likelier to be a stripe's than clutter's, tells nothing."""
 _CLEAR = 4.0
 """Score of a ridge from which it may be a second branch."""
 
@@ -85,7 +86,7 @@ class Markov:
 
     def _chain(self, ridges: Ridges, ratio: Evidence) -> Posterior:
         length = len(ridges.lines.levels)
-        own = ridges.positions, ridges.heights, ridges.counts, ridges.grains
+        own = ridges.straight, ridges.heights, ridges.counts, ridges.grains
         return follow_chain(*own, ratio, length, self.birth, self.death, _MISS, _STEPS)
 
 
@@ -107,7 +108,7 @@ def ask_frames(near: Mapping[int, Ridges], markov: Markov) -> Evidence:
         said += np.where(is_there, seen, _UNSEEN * sure)
     said *= _persistence(near)
     _spare_long(own, said, markov)
-    return said + np.where(own.are_blurred_ends(), _END, 0.0)
+    return np.where(own.are_blurred_ends(), np.minimum(said, 0.0) + _END, said)
 
 
 def _persistence(near: Mapping[int, Ridges]) -> float:
@@ -123,10 +124,10 @@ def _persistence(near: Mapping[int, Ridges]) -> float:
 def _spare_long(ridges: Ridges, said: Evidence, markov: Markov) -> None:
     """Let a surface that is new as a whole be: a long stripe needs no other frame."""
     against = (said[:, 0] < -3.0) & (ridges.heights[:, 0] > 6.0) & ridges.exist[:, 0]
-    if not find_runs(against, ridges.positions[:, 0]).any():
+    if not find_runs(against, ridges.straight[:, 0]).any():
         return
     posterior = markov.follow_alone(ridges)
     best, every = np.argmax(posterior, axis=1), np.arange(len(said))
     on = (posterior[every, best] > 0.5) & (ridges.heights[every, best] > 5.0)
-    run = np.flatnonzero(find_runs(on, ridges.positions[every, best]))
+    run = np.flatnonzero(find_runs(on, ridges.straight[every, best]))
     said[run, best[run]] = np.maximum(said[run, best[run]], 0.0)

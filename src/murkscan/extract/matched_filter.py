@@ -5,12 +5,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float32
+from jaxtyping import Float, Float32
+from scipy.special import erfc
 
 from .._kernels.matched_filter import score_pixels
 from ..types.arrays import Ratios
 from ..types.background import Noise, StripeShape
 from .scan_lines import ScanLines
+
+SKIRT = 2.5
+"""Width of the skirt near the core, as a multiple of the core's."""
+_STEPS = 8
+"""Scan lines beyond a stripe's end over which its blur is looked for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +65,8 @@ class FilterBank:
     filters: tuple[MatchedFilter, ...]
     noise: Noise
     """Of a pixel."""
+    shapes: tuple[StripeShape, ...]
+    """What each filter looks for."""
 
     @classmethod
     def of(cls, shapes: Sequence[StripeShape], noise: Noise) -> "FilterBank":
@@ -69,7 +77,23 @@ class FilterBank:
                 for s in shapes
             ),
             noise,
+            tuple(shapes),
         )
+
+    def tails(self, lines: ScanLines) -> Float[np.ndarray, "shapes steps"]:
+        """Give how high a stripe's blur is beyond its end, as a share of the stripe's height.
+
+        The light that core and skirt scatter across a stripe they scatter along it as well: beyond
+        the end of a line, a bell of 1σ w has fallen to erfc(d / √2 w) / 2 at the distance d. An end
+        lies half way between the last scan line that it lights and the next.
+        """
+        upright = 1.0 / math.hypot(1.0, lines.slope)
+        scale = upright * lines.stretch / lines.binning / lines.line_step
+        widths = np.array([scale * each.width * each.binning for each in self.shapes])[:, None]
+        skirts = np.array([each.skirt for each in self.shapes])[:, None]
+        away = np.arange(_STEPS) + 0.5
+        core, skirt = (0.5 * erfc(away / (math.sqrt(2) * w)) for w in (widths, SKIRT * widths))
+        return (core + skirts * skirt) / (1.0 + skirts)
 
     def score(self, lines: ScanLines) -> "Scored":
         """Score each pixel of a frame by each filter."""

@@ -12,7 +12,6 @@ from typing import ClassVar, TypeVar, final
 from ..errors import InputError
 from ..types.background import Background, Noise, StripeShape
 from ..types.frame import Frame
-from ..types.laser import Axis
 from ..types.rig import Rig
 from ..types.stripe import Stripe
 from .assemble import assemble_stripe
@@ -31,6 +30,7 @@ from .ridges import find_frame_ridges
 from .rim import add_rim
 from .row_noise import learn_row_noise
 from .scan_lines import ScanLines
+from .sheets import expected_slope
 from .stripe_shape import learn_stripe_shapes
 
 _FEW = 16
@@ -71,18 +71,19 @@ class Murk(AbstractExtractor):
 
     def learn(self, frames: Sequence[Frame], rig: Rig, *, laser: int = 0) -> Background:
         """Learn the noise of each grey level, the stripe's shape, and how murky the water is."""
-        axis = rig.laser(laser).axis
+        axis, slope = rig.laser(laser).axis, expected_slope(rig, laser)
         levels = learn_levels([f.image if axis == "y" else f.image.T for f in frames])
         if axis == "y":
             levels = replace(levels, rows=learn_row_noise([f.image for f in frames], levels))
         markov = self._markov(usual_rates())
         rim = add_rim(frames, levels, ())
-        look = [ScanLines.of(frame, axis, noise=levels, fixed=rim) for frame in frames]
+        see = partial(ScanLines.of, axis=axis, noise=levels, slope=slope)
+        look = [see(frame, fixed=rim) for frame in frames]
         learn = partial(learn_stripe_shapes, noise=levels, markov=markov, min_score=self.min_score)
         shapes = learn(_thin(look))
         stays = learn_fixed_patterns(look, FilterBank.of(shapes, levels), markov)
         fixed = add_rim(frames, levels, stays)
-        look = [ScanLines.of(f, axis, noise=levels, fixed=fixed) for f in _thin(frames)]
+        look = [see(frame, fixed=fixed) for frame in _thin(frames)]
         shapes = learn(look) if any(one.levels.any() for one in fixed) else shapes
         rates = self._learn_rates(look, shapes, levels)
         background = Background(learn_noise(frames).noise, levels, shapes, rates=rates, fixed=fixed)
@@ -102,18 +103,24 @@ class Murk(AbstractExtractor):
         """Find the stripe in each frame; see `AbstractExtractor.extract`."""
         if background.levels is None or not background.shapes:
             raise InputError("Murk needs what it has learnt itself: give what its `learn` gave.")
-        centres = self._centres(frames, rig.laser(laser).axis, background.levels, background)
+        look = partial(
+            ScanLines.of,
+            axis=rig.laser(laser).axis,
+            noise=background.levels,
+            fixed=background.fixed,
+            slope=expected_slope(rig, laser),
+        )
+        centres = self._centres(map(look, frames), background.levels, background)
         for near in with_neighbours(centres, 2):
             joined = doubt_wide(join_frames(near))
             yield _as_stripe(joined[joined.posterior >= self.min_posterior], laser)
 
     def _centres(
-        self, frames: Iterable[Frame], axis: Axis, noise: Noise, background: Background
+        self, look: Iterable[ScanLines], noise: Noise, background: Background
     ) -> Iterator[Centres]:
         markov, shapes = self._markov(background.rates), background.shapes
         bank = FilterBank.of(shapes, noise)
-        look = partial(ScanLines.of, axis=axis, noise=noise, fixed=background.fixed)
-        scored = (bank.score(look(frame)) for frame in frames)
+        scored = (bank.score(lines) for lines in look)
         ridges = (
             find_frame_ridges(near, bank, least=self.min_score)
             for near in with_neighbours(scored, 1)

@@ -37,6 +37,10 @@ _HALF_ROW = 0.66
 """Factor for the sum of two fields' rows around a missing one, whose noise is half correlated."""
 _LOBE = 0.35
 """Share of a ridge's height that its own side lobes reach, with noise on them."""
+_FAINT, _MARGIN = 2.5, 1.4
+"""Score from which a ridge may be a stripe's blur, and how much higher than expected such blur may
+be: where a stripe is rolled by 45° it is 1.2 times as high, and scatters by a tenth
+(benchmarks/murk.py: gratings and pieces)."""
 _SURE = 8.0
 """Score from which a ridge is surely there, whatever it is."""
 _LONG, _STEADY = 24, 3.0
@@ -69,6 +73,8 @@ class Ridges:
     """Pixels that this filter averages: positions are no finer."""
     reach: float
     """Pixels from a ridge of the commonest width up to which it has side lobes."""
+    tails: Float[np.ndarray, "shapes steps"]
+    """How high a stripe's blur is so many scan lines beyond its end, as a share of its height."""
 
     @property
     def index(self) -> int:
@@ -80,6 +86,12 @@ class Ridges:
         """Tell which entries are ridges."""
         return np.arange(MOST) < self.counts[:, None]
 
+    @property
+    def straight(self) -> Float[np.ndarray, "lines most"]:
+        """Positions from those of an even wall: what follows a surface steps little."""
+        wall = self.lines.even_wall(np.arange(len(self.counts)))
+        return self.positions - wall[:, None] * self.lines.binning / self.lines.stretch
+
     def are_also_in(self, other: "Ridges", *, near: float, share: float = 0.33) -> Marks:
         """Tell which are in another frame, too, within `near` pixels and at a `share` of height."""
         shift, _ = self.lines.offset(other.lines)
@@ -89,8 +101,9 @@ class Ridges:
 
     def are_blurred_ends(self) -> Marks:
         """Tell which are a stripe's blur, beyond the edge where the stripe ends."""
-        own = self.positions, self.heights, self.counts
-        return find_blurred_ends(*own, 1.5, 0.5, 0.25, 4.0)
+        own = self.positions, self.heights, self.counts, self.shapes
+        slope = self.lines.slope * self.lines.line_step * self.lines.binning / self.lines.stretch
+        return find_blurred_ends(*own, self.tails, slope, _FAINT, _MARGIN)
 
     def are_within(self, which: Marks, distance: float) -> Marks:
         """Tell which lie within a distance of one of some in their scan line [px of `lines`]."""
@@ -101,7 +114,7 @@ class Ridges:
     def agreement(self, other: "Ridges") -> float:
         """Give the share of long, sure stripes that another frame has, too; NaN where few are."""
         sure = self.exist[:, 0] & (self.heights[:, 0] > _SURE)
-        long = find_runs(sure, self.positions[:, 0])
+        long = find_runs(sure, self.straight[:, 0])
         if long.mean() < _MUCH:
             return math.nan
         return float(self.are_also_in(other, near=1.5)[long, 0].mean())
@@ -112,7 +125,7 @@ def find_runs(on: Mask, positions: Scalars, *, least: float = _LONG) -> Mask:
 
     Args:
         on: Scan lines that have a ridge.
-        positions: Where it is [px].
+        positions: Where it is, from where an even wall would be [px].
         least: Scan lines of the shortest long run.
     """
     breaks = ~on[1:] | ~on[:-1] | (np.abs(np.diff(positions)) > _STEADY)
@@ -151,7 +164,8 @@ def find_frame_ridges(near: Mapping[int, Scored], bank: FilterBank, *, least: fl
         drop_hidden(positions, heights, counts, shapes, own.lines.hidden)
     grains = np.array([*(float(each.binning) for each in bank.filters), 1.0])[shapes]
     reach = float(bank.filters[0].reach * bank.filters[0].binning)
-    return Ridges(own.lines, positions, heights, counts, shapes, grains, reach)
+    tails = bank.tails(own.lines)
+    return Ridges(own.lines, positions, heights, counts, shapes, grains, reach, tails)
 
 
 def _add_plateaus(

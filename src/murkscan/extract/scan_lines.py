@@ -30,10 +30,18 @@ class ScanLines:
     """Pixels of the frame's image that show nothing of the scene."""
     binning: int = 1
     """Pixels of the image in one of these."""
+    slope: float = 0.0
+    """Full-frame pixels by which an even wall's stripe moves along scan lines over one across."""
 
     @classmethod
     def of(
-        cls, frame: Frame, axis: Axis, *, noise: Noise, fixed: Sequence[FixedPattern] = ()
+        cls,
+        frame: Frame,
+        axis: Axis,
+        *,
+        noise: Noise,
+        fixed: Sequence[FixedPattern] = (),
+        slope: float = 0.0,
     ) -> "ScanLines":
         """Look at a frame along its scan lines.
 
@@ -42,6 +50,7 @@ class ScanLines:
             axis: The camera's axis along which the laser sits.
             noise: Of a pixel; its rows' noise is taken away where it lies across scan lines.
             fixed: What is fixed to the picture, of all kinds of fields.
+            slope: Of an even wall's stripe; see `sheets.expected_slope`.
         """
         image = frame.image if axis == "y" else frame.image.T
         levels = signal = np.ascontiguousarray(image)
@@ -52,7 +61,7 @@ class ScanLines:
                 signal, hidden = levels - own.levels, own.overlay
         if noise.rows and axis == "y":
             signal = without_rows(signal, noise)
-        return cls(frame, axis, levels, signal, noise.white, hidden)
+        return cls(frame, axis, levels, signal, noise.white, hidden, slope=slope)
 
     def binned(self, binning: int) -> "ScanLines":
         """Average pixels along scan lines; what is left over at their ends is left out.
@@ -95,6 +104,10 @@ class ScanLines:
     def line_step(self) -> int:
         """Full-frame pixels from one scan line to the next."""
         return 1 if self.axis == "y" else self.frame.row_step
+
+    def even_wall(self, lines: Indices) -> Scalars:
+        """Give where an even wall's stripe would lie from scan line 0 on [full-frame px]."""
+        return self.slope * self.line_step * lines
 
     def offset(self, other: "ScanLines") -> tuple[float, float]:
         """Give what must be added to another's (position, line) to be this one's.

@@ -147,7 +147,7 @@ class _Learner:
         own = ridges.shapes[line, which] == number
         on, place = np.zeros(len(ridges.counts), bool), np.zeros(len(ridges.counts))
         on[line[own]] = True
-        place[line[own]] = ridges.positions[line[own], which[own]]
+        place[line[own]] = ridges.straight[line[own], which[own]]
         # Snow out of focus is as wide, but no longer than it is wide.
         least = max(_LONGER * shape.width * shape.binning, 24.0)
         long = find_runs(on, place, least=least)
