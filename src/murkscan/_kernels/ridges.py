@@ -241,7 +241,7 @@ def _highest_near(
     positions: np.ndarray, heights: np.ndarray, counts: np.ndarray,
     line: int, position: float, near: float,
 ) -> int:  # fmt: skip
-    """Give the number of a line's highest ridge within `near` of a place; -1 where there is none."""
+    """Give the number of a line's highest ridge within `near` of a place; -1: there is none."""
     if line < 0 or line >= len(counts):
         return -1
     for j in range(counts[line]):

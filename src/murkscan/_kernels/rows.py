@@ -14,9 +14,9 @@ def row_offsets(levels: np.ndarray, bound: np.ndarray) -> np.ndarray:
     """Estimate by how much each row is brighter than those around it.
 
     The mean over its pixels of their difference to the mean of `HALF` rows on both sides. Those
-    count that lie on no stripe: neither they nor those in the same column, as many rows away, differ
-    by more than `bound` (one a row). Where a stripe stands along the row, its few gaps tell; where
-    there are none, all pixels count, by no more than that.
+    count that lie on no stripe: neither they nor those in the same column, as many rows away,
+    differ by more than `bound` (one a row). Where a stripe stands along the row, its few gaps
+    tell; where there are none, all pixels count, by no more than that.
     """
     length, width = levels.shape
     off, lit = _compare(levels, bound)

@@ -36,6 +36,8 @@ of 3 to 4 and their light grows with the square of the size (Jonasz and Fournier
 """
 _TRUSTED = 1e5
 """Pixels that this expectation is worth."""
+_FEW = 20.0
+"""Ridges by chance that say as much of how clutter goes on as nothing known."""
 _MAXIMA = 3.0
 """Times that noise makes more low maxima than clutter is expected to; what is beyond is clutter."""
 _ENOUGH, _ALIKE = np.log(50.0), 4.0
@@ -91,21 +93,30 @@ def learn_rates(
 ) -> Rates:
     """Count the ridges that are no stripe, by height [1/px and e-fold].
 
+    Clutter that goes on over scan lines, as blocks of an encoder and blobs of snow do, is counted
+    as often as it does so beyond chance: each line of it tells no more.
+
     Args:
         ridges: Of frames spread over the recording.
         posteriors: Of each ridge being the stripe.
     """
     counts, pixels = np.zeros(len(_HEIGHTS)), 0
+    going, by_chance = np.zeros(len(_HEIGHTS)), np.zeros(len(_HEIGHTS))
     for one, posterior in zip(ridges, posteriors, strict=True):
-        stripe = posterior > 0.5
+        stripe = one.are_long(posterior > 0.5)
         other = one.exist & ~stripe & ~one.are_within(stripe, one.reach)
         place = np.rint(np.log(one.heights[other] / _HEIGHTS[0]) / _STEP).astype(int)
-        counts += np.bincount(np.clip(place, 0, len(counts) - 1), minlength=len(counts))
+        place = np.clip(place, 0, len(counts) - 1)
+        go_on, expected = one.go_on(other)
+        counts += np.bincount(place, minlength=len(counts))
+        going += np.bincount(place, go_on[other], minlength=len(counts))
+        by_chance += np.bincount(place, expected[other], minlength=len(counts))
         pixels += one.lines.levels.size
     rates = (counts / _STEP + _TRUSTED * usual_rates()) / (pixels + _TRUSTED)
     # Low ones are the noise's own maxima, and stripes that were missed.
     low = np.maximum(usual_rates(), rates / _MAXIMA)
-    return np.where(_HEIGHTS < _KNEE, low, rates)
+    rates = np.where(_HEIGHTS < _KNEE, low, rates)
+    return rates * np.maximum((going + _FEW) / (by_chance + _FEW), 1.0)
 
 
 def weigh_heights(

@@ -27,8 +27,9 @@ _PERSISTENT = (0.3, 0.6)
 """Share of sure ridges that the next frame of the same rows has, too, over which frames come to
 count at all."""
 _END = -12.0
-"""Logarithm of the likelihood ratio of a stripe's blur beyond its end, which stays over frames as the
-stripe does: its height, up to e^6 times likelier to be a stripe's than clutter's, tells nothing."""
+"""Logarithm of the likelihood ratio of a stripe's blur beyond its end. It stays over frames as the
+stripe does, and its height, up to e^6 times likelier to be a stripe's than clutter's, says nothing.
+"""
 _CLEAR = 4.0
 """Score of a ridge from which it may be a second branch."""
 

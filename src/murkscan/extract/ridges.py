@@ -111,6 +111,27 @@ class Ridges:
         apart = np.abs(self.positions[:, :, None] - places[:, None, :])
         return (apart < distance).any(axis=2)
 
+    def are_long(self, which: Marks) -> Marks:
+        """Tell which of some are the highest of their line and go on over many lines."""
+        heights = np.where(which, self.heights, 0.0)
+        best, every = np.argmax(heights, axis=1), np.arange(len(heights))
+        marks = np.zeros(which.shape, bool)
+        marks[every, best] = find_runs(which[every, best], self.straight[every, best])
+        return marks
+
+    def go_on(self, which: Marks) -> tuple[Marks, Float[np.ndarray, "lines most"]]:
+        """Tell which of some have another within a grain in the next line, and how many would.
+
+        Gives the number of those that lie so near by chance as well.
+        """
+        places = np.where(which, self.straight, np.inf)[1:, None, :]
+        near = np.abs(self.straight[:-1, :, None] - places) < self.grains[:-1, :, None]
+        marks, chance = np.zeros(which.shape, bool), np.zeros(which.shape)
+        marks[:-1] = which[:-1] & near.any(axis=2)
+        density = which.sum(axis=1) / len(self.lines.levels)
+        chance[:-1] = 2.0 * self.grains[:-1] * density[1:, None]
+        return marks, chance
+
     def agreement(self, other: "Ridges") -> float:
         """Give the share of long, sure stripes that another frame has, too; NaN where few are."""
         sure = self.exist[:, 0] & (self.heights[:, 0] > _SURE)
