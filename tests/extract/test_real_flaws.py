@@ -1,12 +1,16 @@
 """What real pictures have beside the stripe: dirt, rims, rows with noise, bands of white."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from scipy.ndimage import gaussian_filter
 
 from murkscan.extract import Murk
 from murkscan.types.camera import Camera
 from murkscan.types.frame import Frame
 from murkscan.types.laser import Laser
+from murkscan.types.plane import Plane
 from murkscan.types.rig import Rig
 
 HEIGHT, LENGTH = 160, 240
@@ -117,3 +121,81 @@ def test_a_band_of_white_is_found_by_both_its_edges(width):
     assert abs(off.mean()) < 0.05
     assert np.abs(off).max() < 0.5
     assert all((stripe.signal <= 255).all() for stripe in stripes)
+
+
+def _blurred(thin):
+    """Give light of a line as a lens does that blurs it alike along and across."""
+    return gaussian_filter(thin, 1.3) * 1.3 * np.sqrt(2 * np.pi)
+
+
+@pytest.mark.parametrize("slope", [0.0, 0.7])
+def test_beyond_its_ends_a_stripe_s_blur_is_no_surface(slope):
+    """Pieces of 12 lines with gaps as long: blur reaches five lines into each gap."""
+    lit = LINES // 12 % 2 == 0
+    wall = replace(RIG, lasers=(Laser.from_sheet(Plane(_unit(-slope, 1.0, -0.5), 0.2)),))
+    light = []
+    for i in range(8):
+        thin = np.zeros((HEIGHT, LENGTH))
+        centres = (
+            60.0 + 0.5 * i - slope * (LINES - 120) * 0.25 if slope else 60.0 + 0.5 * i + 0 * LINES
+        )
+        for k in np.flatnonzero(lit):
+            row = int(centres[k])
+            share = centres[k] - row
+            thin[row, k], thin[row + 1, k] = 100.0 * (1 - share), 100.0 * share
+        light.append(8.0 + _blurred(thin))
+    frames = _film(light)
+    murk = Murk()
+    stripes = list(murk.extract(frames, wall, murk.learn(frames, wall)))
+    found = np.concatenate([s.pixels[:, 0].astype(int) for s in stripes])
+    ends = np.minimum(LINES % 12, 11 - LINES % 12)
+    assert np.mean(lit[found]) > 0.95
+    assert np.sum(~lit[found] & (ends[found] >= 1)) == 0
+    assert np.sum(lit[found]) > 0.95 * 8 * lit.sum()
+
+
+def test_beside_a_stripe_that_stands_along_the_rows_their_noise_is_none():
+    """Where rows are freed of their noise, the still stripe must not leave a ditch in its gaps."""
+    gap = (LINES > 100) & (LINES < 140)
+    glow = 20.0 * np.exp(-0.5 * ((ROWS - 80.0) / 12.0) ** 2)
+    light = [8.0 + glow + np.where(gap, 0.0, _line(80.0 + 0 * LINES, 100.0))] * 12
+    found = np.concatenate([s.pixels[:, 0].astype(int) for s in _extract(_film(light, rows=1.0))])
+    assert np.sum(gap[found]) < 0.01 * len(found)
+    assert np.sum(~gap[found]) > 0.98 * 12 * (~gap).sum()
+
+
+def _unit(*vector):
+    return np.array(vector) / np.linalg.norm(vector)
+
+
+SHEETS = {
+    "beside": (Plane(_unit(0.0, 0.9, -0.44), 0.19), Plane(_unit(0.0, 0.9, -0.52), 0.19)),
+    "crossed": (Plane(_unit(0.0, 0.9, -0.44), 0.19), Plane(_unit(0.3, 0.9, -0.44), 0.19)),
+}
+
+
+@pytest.mark.parametrize("sheets", SHEETS)
+def test_each_of_two_lasers_has_its_own_stripe(sheets):
+    """The wall comes nearer, and has relief."""
+    rig = replace(RIG, lasers=tuple(Laser(sheet, "y") for sheet in SHEETS[sheets]))
+    (fx, fy), (cx, cy) = RIG.camera.focal_length, RIG.camera.principal_point
+    truth = np.empty((12, 2, LENGTH))
+    for i in range(12):
+        z = 0.42 + 0.03 * np.sin(0.1 * i) + 0.004 * np.sin(LINES / 9.0 + i)
+        for number, sheet in enumerate(SHEETS[sheets]):
+            x = (LINES - cx) / fx * z
+            y = -(sheet.distance + sheet.normal[0] * x + sheet.normal[2] * z) / sheet.normal[1]
+            truth[i, number] = cy + fy * y / z
+    frames = _film([8.0 + np.maximum(*(_line(one, 60.0) for one in pair)) for pair in truth])
+    apart = np.abs(truth[:, 0] - truth[:, 1]) > 6.0
+    murk = Murk()
+    for number in (0, 1):
+        stripes = murk.extract(frames, rig, murk.learn(frames, rig, laser=number), laser=number)
+        right = count = 0
+        for i, stripe in enumerate(stripes):
+            line = stripe.pixels[:, 0].astype(int)
+            clear = apart[i, line]
+            off = np.abs(stripe.pixels[clear, 1] - truth[i, number, line[clear]])
+            right, count = right + np.sum(off < 1.5), count + len(off)
+        assert right > 0.99 * count
+        assert right > 0.97 * apart.sum()

@@ -243,7 +243,7 @@ def join_frames(near: Mapping[int, Centres]) -> Centres:
         _REACH,
         _ROUGH,
     )
-    wall = own.lines.even_wall(own.scan_line)
+    wall = own.lines.even_wall(own.scan_line.astype(float))
     return replace(own, position=wall + joined[:, 0], sigma=joined[:, 1])
 
 

@@ -36,6 +36,8 @@ of 3 to 4 and their light grows with the square of the size (Jonasz and Fournier
 """
 _TRUSTED = 1e5
 """Pixels that this expectation is worth."""
+_HIGH = 10.0
+"""Height from which what goes on over a few lines may be a small piece of surface."""
 _FEW = 20.0
 """Ridges by chance that say as much of how clutter goes on as nothing known."""
 _MAXIMA = 3.0
@@ -89,21 +91,21 @@ def usual_rates() -> Rates:
 
 
 def learn_rates(
-    ridges: Sequence[Ridges], posteriors: Sequence[Float[np.ndarray, "_ most"]]
+    ridges: Sequence[Ridges], posteriors: Sequence[Sequence[Float[np.ndarray, "_ most"]]]
 ) -> Rates:
     """Count the ridges that are no stripe, by height [1/px and e-fold].
 
-    Clutter that goes on over scan lines, as blocks of an encoder and blobs of snow do, is counted
-    as often as it does so beyond chance: each line of it tells no more.
+    Low clutter that goes on over scan lines, as an encoder's blocks do, is counted as often as it
+    does so beyond chance: each line of it tells no more.
 
     Args:
         ridges: Of frames spread over the recording.
-        posteriors: Of each ridge being the stripe.
+        posteriors: Of each ridge being the stripe, of each laser.
     """
     counts, pixels = np.zeros(len(_HEIGHTS)), 0
     going, by_chance = np.zeros(len(_HEIGHTS)), np.zeros(len(_HEIGHTS))
-    for one, posterior in zip(ridges, posteriors, strict=True):
-        stripe = one.are_long(posterior > 0.5)
+    for one, lasers in zip(ridges, posteriors, strict=True):
+        stripe = np.any([one.are_long(posterior > 0.5) for posterior in lasers], axis=0)
         other = one.exist & ~stripe & ~one.are_within(stripe, one.reach)
         place = np.rint(np.log(one.heights[other] / _HEIGHTS[0]) / _STEP).astype(int)
         place = np.clip(place, 0, len(counts) - 1)
@@ -116,7 +118,8 @@ def learn_rates(
     # Low ones are the noise's own maxima, and stripes that were missed.
     low = np.maximum(usual_rates(), rates / _MAXIMA)
     rates = np.where(_HEIGHTS < _KNEE, low, rates)
-    return rates * np.maximum((going + _FEW) / (by_chance + _FEW), 1.0)
+    clumps = np.maximum((going + _FEW) / (by_chance + _FEW), 1.0)
+    return rates * np.where(_HEIGHTS < _HIGH, clumps, 1.0)
 
 
 def weigh_heights(

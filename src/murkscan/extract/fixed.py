@@ -39,7 +39,7 @@ Levels = Float32[np.ndarray, "length lines"]
 
 
 def learn_fixed_patterns(
-    look: Sequence[ScanLines], bank: FilterBank, markov: Markov
+    look: Sequence[ScanLines], bank: FilterBank, markov: Markov, *, lasers: int = 1
 ) -> tuple[FixedPattern, ...]:
     """Learn what stays in its place whatever the scene does; one pattern for each kind of field.
 
@@ -50,27 +50,30 @@ def learn_fixed_patterns(
         look: Frames spread over the recording, along their scan lines.
         bank: The filters.
         markov: The chain that tells the stripe from the rest.
+        lasers: How many stripes the pictures show.
     """
     patterns = []
     for row in sorted({lines.frame.first_row for lines in look}):
         group = [lines for lines in look if lines.frame.first_row == row]
         group = [lines for lines in group if lines.levels.shape == group[0].levels.shape]
         if len(group) >= _FEWEST:
-            levels = _learn_levels(group, bank, markov)
+            levels = _learn_levels(group, bank, markov, lasers)
             if group[0].axis == "x":
                 levels = np.ascontiguousarray(levels.T)
             patterns.append(FixedPattern(row, levels, _find_overlay(levels, bank.noise.white)))
     return tuple(patterns)
 
 
-def _learn_levels(group: Sequence[ScanLines], bank: FilterBank, markov: Markov) -> Levels:
+def _learn_levels(
+    group: Sequence[ScanLines], bank: FilterBank, markov: Markov, lasers: int
+) -> Levels:
     low, lasting = _low_levels([lines.levels for lines in group], bank.noise)
     base = replace(group[0], levels=low, signal=low)
     frames = [
         find_frame_ridges({0: bank.score(each)}, bank, least=LEAST / 2) for each in (base, *group)
     ]
     standing = Standing.of(frames[0], frames[1:])
-    is_surface = standing.are_surface(markov)
+    is_surface = standing.are_surface(markov, lasers=lasers)
     covered = standing.cover(is_surface, low.shape)
     judged = standing.cover(standing.stand & ~is_surface, low.shape)
     return _stand_out(low, covered, judged, lasting, bank.noise, len(group))

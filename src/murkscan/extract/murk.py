@@ -9,6 +9,8 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import ClassVar, TypeVar, final
 
+import numpy as np
+
 from ..errors import InputError
 from ..types.background import Background, Noise, StripeShape
 from ..types.frame import Frame
@@ -30,7 +32,7 @@ from .ridges import find_frame_ridges
 from .rim import add_rim
 from .row_noise import learn_row_noise
 from .scan_lines import ScanLines
-from .sheets import expected_slope
+from .sheets import OtherLasers, expected_slope
 from .stripe_shape import learn_stripe_shapes
 
 _FEW = 16
@@ -81,11 +83,12 @@ class Murk(AbstractExtractor):
         look = [see(frame, fixed=rim) for frame in frames]
         learn = partial(learn_stripe_shapes, noise=levels, markov=markov, min_score=self.min_score)
         shapes = learn(_thin(look))
-        stays = learn_fixed_patterns(look, FilterBank.of(shapes, levels), markov)
+        bank, lasers = FilterBank.of(shapes, levels), len(rig.lasers)
+        stays = learn_fixed_patterns(look, bank, markov, lasers=lasers)
         fixed = add_rim(frames, levels, stays)
         look = [see(frame, fixed=fixed) for frame in _thin(frames)]
         shapes = learn(look) if any(one.levels.any() for one in fixed) else shapes
-        rates = self._learn_rates(look, shapes, levels)
+        rates = self._learn_rates(look, shapes, levels, rig)
         background = Background(learn_noise(frames).noise, levels, shapes, rates=rates, fixed=fixed)
         alone = (self.extract([frame], rig, background, laser=laser) for frame in frames)
         stripes = [next(found) for found in alone]
@@ -110,13 +113,14 @@ class Murk(AbstractExtractor):
             fixed=background.fixed,
             slope=expected_slope(rig, laser),
         )
-        centres = self._centres(map(look, frames), background.levels, background)
+        others = OtherLasers.of(rig, laser)
+        centres = self._centres(map(look, frames), background.levels, background, others)
         for near in with_neighbours(centres, 2):
             joined = doubt_wide(join_frames(near))
             yield _as_stripe(joined[joined.posterior >= self.min_posterior], laser)
 
     def _centres(
-        self, look: Iterable[ScanLines], noise: Noise, background: Background
+        self, look: Iterable[ScanLines], noise: Noise, background: Background, others: OtherLasers
     ) -> Iterator[Centres]:
         markov, shapes = self._markov(background.rates), background.shapes
         bank = FilterBank.of(shapes, noise)
@@ -126,21 +130,26 @@ class Murk(AbstractExtractor):
             for near in with_neighbours(scored, 1)
         )
         for near in with_neighbours(ridges, 4):
-            posterior = markov.follow(near[0], ask_frames(near, markov))
+            own = others.tell(near[0])
+            posterior = own * markov.follow(near[0], ask_frames(near, markov) + np.log(own))
             yield find_centres(near[0], posterior, noise=noise, shapes=shapes)
 
     def _learn_rates(
-        self, look: Sequence[ScanLines], shapes: tuple[StripeShape, ...], noise: Noise
+        self, look: Sequence[ScanLines], shapes: tuple[StripeShape, ...], noise: Noise, rig: Rig
     ) -> Rates:
-        """Count the clutter of each height, twice: what is a stripe depends on it."""
+        """Count the clutter of each height, twice: what is a stripe, of any laser, hangs on it."""
         bank = FilterBank.of(shapes, noise)
         ridges = [
             find_frame_ridges({0: bank.score(lines)}, bank, least=self.min_score) for lines in look
         ]
+        lasers = [OtherLasers.of(rig, number) for number in range(len(rig.lasers))]
         rates = usual_rates()
         for _ in range(2):
             markov = self._markov(rates)
-            rates = learn_rates(ridges, [markov.follow(one) for one in ridges])
+            stripes = [
+                [markov.follow(one, np.log(laser.tell(one))) for laser in lasers] for one in ridges
+            ]
+            rates = learn_rates(ridges, stripes)
         return rates
 
     def _markov(self, rates: Rates) -> Markov:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Bool, Float, Int8
@@ -14,6 +15,7 @@ from .._kernels.ridges import (
     find_blurred_ends,
     find_ridges,
     merge_ridges,
+    pool_along,
     replace_near,
 )
 from ..types.arrays import Indices, Mask, Scalars
@@ -89,7 +91,7 @@ class Ridges:
     @property
     def straight(self) -> Float[np.ndarray, "lines most"]:
         """Positions from those of an even wall: what follows a surface steps little."""
-        wall = self.lines.even_wall(np.arange(len(self.counts)))
+        wall = self.lines.even_wall(np.arange(len(self.counts), dtype=float))
         return self.positions - wall[:, None] * self.lines.binning / self.lines.stretch
 
     def are_also_in(self, other: "Ridges", *, near: float, share: float = 0.33) -> Marks:
@@ -134,11 +136,17 @@ class Ridges:
 
     def agreement(self, other: "Ridges") -> float:
         """Give the share of long, sure stripes that another frame has, too; NaN where few are."""
-        sure = self.exist[:, 0] & (self.heights[:, 0] > _SURE)
-        long = find_runs(sure, self.straight[:, 0])
-        if long.mean() < _MUCH:
+        long = self.are_sure_and_long
+        if long.any(axis=1).mean() < _MUCH:
             return math.nan
-        return float(self.are_also_in(other, near=1.5)[long, 0].mean())
+        return float(self.are_also_in(other, near=1.5)[long].mean())
+
+    @cached_property
+    def are_sure_and_long(self) -> Marks:
+        """Tell which are sure and part of a line that follows itself over many scan lines."""
+        sure = self.exist & (self.heights > _SURE)
+        own, ones = (self.straight, self.counts, sure), np.ones(sure.shape)
+        return sure & (pool_along(*own, ones, int(_LONG), _STEADY - 1.0, 0) >= _LONG)
 
 
 def find_runs(on: Mask, positions: Scalars, *, least: float = _LONG) -> Mask:

@@ -105,8 +105,8 @@ class ScanLines:
         """Full-frame pixels from one scan line to the next."""
         return 1 if self.axis == "y" else self.frame.row_step
 
-    def even_wall(self, lines: Indices) -> Scalars:
-        """Give where an even wall's stripe would lie from scan line 0 on [full-frame px]."""
+    def even_wall(self, lines: Scalars) -> Scalars:
+        """Give how far an even wall's stripe has moved since scan line 0 [full-frame px]."""
         return self.slope * self.line_step * lines
 
     def offset(self, other: "ScanLines") -> tuple[float, float]:
@@ -121,6 +121,10 @@ class ScanLines:
         """Give positions along scan lines in pixels of the full frame."""
         along = self.binning * positions + 0.5 * (self.binning - 1)
         return self.frame.as_full_rows(along) if self.axis == "y" else along
+
+    def full_frame_lines(self, lines: Scalars) -> Scalars:
+        """Give scan lines in pixels of the full frame."""
+        return lines if self.axis == "y" else self.frame.as_full_rows(lines)
 
     def from_image(self, positions: Scalars) -> Scalars:
         """Compute positions in these pixels from those in the frame's image."""

@@ -94,13 +94,18 @@ class Standing:
         own = self.ridges.positions, self.ridges.counts, self.stand
         return pool_along(*own, values, reach, _SLOPE, _GAP)
 
-    def are_surface(self, markov: Markov) -> Marks:
-        """Tell which are a surface that keeps its distance, and not fixed to the picture."""
+    def are_surface(self, markov: Markov, *, lasers: int) -> Marks:
+        """Tell which are a surface that keeps its distance, and not fixed to the picture.
+
+        Args:
+            markov: The chain that tells the stripe from the rest.
+            lasers: How many stripes a scan line has; of several, one being elsewhere says nothing.
+        """
         both, only = self._count_elsewhere(markov)
         told = np.clip(_BOTH * both + _ONLY * only, -_MOST_TOLD, _MOST_TOLD)
         share = self.pool(both + only, _NEAR_LINES) / len(self.frames)
         is_known = share > _OFTEN * self.pool(self.stand.astype(float), _NEAR_LINES)
-        told = np.where(is_known, told, 0.0)
+        told = np.where(is_known & (lasers == 1), told, 0.0)
         is_dirty = self.stand.sum() > _LONE * len(self.stand)
         steady = self.steadiness() + np.where(self.are_crowded(), _MOST_TOLD, 0.0)
         steady = np.where(self.are_moving(), -_MOST_TOLD, steady)
