@@ -10,12 +10,16 @@ from typing import Any
 import av
 
 from ..errors import FormatError, InputError
+from ..io.dive.contents import read_contents
+from ..io.dive.open import is_dive
 from ..io.picture_notes import count_pages
 from ..types.arrays import Image
 from .base import AbstractRecording
+from .chapters import find_chapters, open_chapters
 from .clock import Clock, usual_spacing
 from .container import open_video, picture_ticks
 from .decode import Picture, decode_pictures, grey_from_video, picture_time
+from .dive import open_dive_pictures
 from .field_order import RUN, RUNS, Fields, decide_order, say_order
 from .fields import FieldOrder
 from .folder import is_picture
@@ -28,29 +32,49 @@ _SLACK = 0.5
 
 
 def open_recording(
-    path: Path | str,
+    path: Path | str | Sequence[Path | str],
     *,
     wavelength: float = 532e-9,
     fps: float | None = None,
     fields: Fields = "auto",
+    topic: str | None = None,
 ) -> AbstractRecording:
-    """Open a folder of pictures, a TIFF of several pages, or a video file.
+    """Open a folder of pictures, a TIFF of several pages, a video file, or a dive's MCAP or bag.
 
     Args:
-        path: The folder or the file.
+        path: The folder or the file; several files in order, or a folder with nothing but videos,
+            are chapters of one recording.
         wavelength: Wavelength of the laser, for which colours are weighted [m].
         fps: Pictures a second: for a folder without times.csv, or in place of a video's own times
             (a high-speed camera's file plays slowly). Without either, a frame's time is the
             number of its picture.
         fields: Whether a picture is two interlaced fields, and which came first; by itself it is
             found from some 25 pictures.
+        topic: The topic of the pictures, where an MCAP or a bag has several cameras.
 
     Raises:
         InputError: There is nothing at the path, or a setting makes no sense.
         FormatError: It is no recording, nothing in it can be read, or times.csv is wrong.
+        MissingDependency: What reads it is not installed.
     """
-    path = Path(path)
-    _check(path, wavelength, fps)
+    paths = [Path(path)] if isinstance(path, Path | str) else [Path(one) for one in path]
+    for one in paths:
+        _check(one, wavelength, fps)
+    chapters = find_chapters(paths)
+    if len(chapters) > 1:
+        return open_chapters([_open_one(one, wavelength, fps, fields, topic) for one in chapters])
+    return _open_one(chapters[0], wavelength, fps, fields, topic)
+
+
+def _open_one(
+    path: Path, wavelength: float, fps: float | None, fields: Fields, topic: str | None
+) -> AbstractRecording:
+    if is_dive(path):
+        if fps is not None:
+            raise InputError(f"{path} has times of its own; leave out --fps.")
+        return open_dive_pictures(read_contents(path), topic, wavelength, fields)
+    if topic is not None:
+        raise InputError(f"{path} has no topics; leave out --topic.")
     if path.is_dir():
         return open_folder(path, wavelength, fps, fields)
     if is_picture(path):

@@ -4,13 +4,13 @@ from pathlib import Path
 
 from ..ui.choices import ExtractorName, check_settings, make_extractor
 from .options import ExecutorFlags, RecordingFlags, Settings
-from .paths import RecordingPath, RigFile
+from .paths import RecordingPaths, RigFile
 from .progress import progress_bars
 from .typed import WORDS
 
 
 def extract(
-    recording: RecordingPath,
+    recording: RecordingPaths,
     *,
     rig: RigFile,
     out: Path,
@@ -25,7 +25,7 @@ def extract(
     Parameters
     ----------
     recording
-        A folder of images, or a video.
+        A folder of images, a video or its chapters in order, or a dive's MCAP or bag.
     rig
         The rig file of the camera and laser that made the recording.
     out

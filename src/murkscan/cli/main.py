@@ -15,6 +15,7 @@ _COMMANDS = {
     "demo": "Scan the built-in sample and say how far the model is from the truth.",
     "calibrate": "Find out what the camera and the laser are.",
     "capture": "Record a stream or a camera into a file, as it comes.",
+    "dive": "List what an MCAP, a bag or a .tlog holds: topics, rates, holes, clock steps.",
     "scan": "Turn a recording into a measured 3D model: all stages in order.",
     "extract": "Find the stripe in every frame of a recording.",
     "triangulate": "Turn stripes into profiles in the camera's frame.",

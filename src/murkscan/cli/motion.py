@@ -13,14 +13,17 @@ def motion(out: ScanFolder, *, flags: MotionFlags = MotionFlags()) -> None:
     out
         Folder of the scan, with a finished extract stage.
     """
-    flags.check()
-    from ..project import EXTRACT, Project, load_scan_rig
+    from pathlib import Path
+
+    from ..project import EXTRACT, Project, load_recording, load_scan_rig
     from ..survey.motion import follow_motion
     from .summary import print_remarks, print_result
 
     project = Project(out, WORDS.get())
+    recording = Path(load_recording(project).path)
+    flags.check(recording)
     rig = load_scan_rig(project)
     laser = project.finished(EXTRACT).result.laser
-    result = follow_motion(project, flags.make(rig, laser))
+    result = follow_motion(project, flags.make(rig, laser, recording))
     print_result("motion", result, out / "motion", out=out)
     print_remarks(result.remarks)

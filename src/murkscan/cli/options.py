@@ -1,5 +1,6 @@
 """Flags that several commands share."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -41,16 +42,18 @@ class RecordingFlags:
     """Pictures a second, for a folder of images without times.csv."""
     fields: Literal["auto", "progressive", "top-first", "bottom-first"] = "auto"
     """Whether a picture holds two fields of an interlaced camera; found if not said."""
+    topic: str | None = None
+    """Topic of the pictures in an MCAP or a bag; asked for where there are several."""
 
-    def open(self, path: Path, rig: "Rig") -> "AbstractRecording":
-        """Open the recording of a rig."""
+    def open(self, paths: Sequence[Path], rig: "Rig") -> "AbstractRecording":
+        """Open the recording of a rig: one path, or chapters in order."""
         from ..capture import open_recording
 
         recording = open_recording(
-            path, wavelength=rig.wavelength, fps=self.fps, fields=self.fields
+            paths, wavelength=rig.wavelength, fps=self.fps, fields=self.fields, topic=self.topic
         )
         for remark in recording.remarks:
-            tell("recording", f"{path.name}: {remark}")
+            tell("recording", f"{paths[0].name}: {remark}")
         return recording
 
 
@@ -81,19 +84,16 @@ class ExecutorFlags:
         return Processes(self.workers) if self.executor == "processes" else Threads(self.workers)
 
 
-_OF_LOGS = {
-    "start_time": "0",
-    "time_offset_s": 0.0,
-    "gap_s": 0.5,
-    **dict.fromkeys(("log_time", "log_quaternion", "log_axes", "log_angles")),
-}
-"""Flags that mean something to a log of poses only, and what they are unless given."""
+_OF_LOGS = {"start_time": "0", "time_offset_s": 0.0, "gap_s": 0.5, "crs": None}
+"""Flags that mean something to a log only, and what they are unless given."""
+_OF_POSES = ("log_time", "log_quaternion", "log_axes", "log_angles")
+"""Flags that mean something to a log of poses only."""
 
 
 @Parameter(name="*", group=MOTION)
 @dataclass(frozen=True)
 class MotionFlags:
-    """How the camera moved: exactly one of --speed-mm-s, --step-mm and --poses."""
+    """How the camera moved: --speed-mm-s, --step-mm, --poses, or what the vehicle measured."""
 
     speed_mm_s: float | None = None
     """Constant speed [mm/s]; negative for the other way."""
@@ -101,6 +101,12 @@ class MotionFlags:
     """Constant step [mm] from one recorded picture to the next; negative for the other way."""
     poses: MaybeLogPath = None
     """Log of poses: CSV by its columns' names, EuRoC, rostopic echo -p, or TUM; docs/motion.md."""
+    navigation: MaybeLogPath = None
+    """What the vehicle's instruments measured: MCAP, bag, .tlog, NMEA, or CSV; docs/dive.md."""
+    no_navigation: Annotated[bool, Parameter(negative=())] = False
+    """Take only the pictures of an MCAP or a bag."""
+    crs: str | None = None
+    """System in which latitude and longitude become metres, as EPSG:32632; else UTM's zone."""
     along: Literal["x", "y", "z"] | None = None
     """Camera axis of a constant speed or step; the laser's axis unless said."""
     start_time: str = "0"
@@ -118,49 +124,86 @@ class MotionFlags:
     log_angles: Literal["deg", "rad"] | None = None
     """Unit of the log's roll, pitch and heading; found from the column's name, else degrees."""
 
-    def check(self) -> None:
+    def check(self, recording: Path | None = None) -> None:
         """Refuse flags that describe no motion, before anything else is done.
+
+        Args:
+            recording: The recording; an MCAP or a bag holds a log itself.
 
         Raises:
             InputError: There is none, or more than one, or a flag that changes nothing.
         """
         given = [flag for flag in (self.speed_mm_s, self.step_mm, self.poses) if flag is not None]
-        if len(given) != 1:
+        log = self._find_log(recording)
+        if len(given) > 1 or (not given and log is None):
             raise InputError(
                 f"Give exactly one of --speed-mm-s, --step-mm and --poses; {len(given) or 'none'} "
                 f"{'were' if given else 'was'} given, and without knowing how the camera moved "
-                "there is no model."
+                "there is no model. A vehicle's own log goes with --navigation."
             )
+        if self.navigation is not None and (self.no_navigation or log is None):
+            raise InputError("--navigation goes with no other flag but --speed-mm-s; leave it out.")
         if 0 in given:
             raise InputError(
                 "--speed-mm-s and --step-mm take a number other than 0; a camera that stands still "
                 "sees one profile."
             )
-        self._check_effect()
+        self._check_effect(log)
         read_start_time(self.start_time)
 
-    def make(self, rig: "Rig", laser: int) -> "AbstractMotion":
+    def make(self, rig: "Rig", laser: int, recording: Path | None = None) -> "AbstractMotion":
         """Make the motion that these flags describe."""
         from ..motion import ConstantSpeed, ConstantStep, PoseLog
         from ..types.pose import Pose
 
-        self.check()
+        self.check(recording)
         along = self.along or rig.laser(laser).axis
+        log = self._find_log(recording)
+        if log is not None:
+            return self._follow(log, rig, along)
         if self.speed_mm_s is not None:
             return ConstantSpeed(self.speed_mm_s / 1e3, along)
         if self.step_mm is not None:
             return ConstantStep(self.step_mm / 1e3, along)
         assert self.poses is not None
         mount = rig.vehicle_from_camera or Pose.identity()
-        start = read_start_time(self.start_time)
         return PoseLog(
             self._read_log(self.poses),
             mount,
-            start,
+            read_start_time(self.start_time),
             self.time_offset_s,
             self.gap_s,
             name=str(self.poses),
         )
+
+    def _find_log(self, recording: Path | None) -> Path | None:
+        """Give the log of measurements that is to be followed, if there is any."""
+        if self.step_mm is not None or self.poses is not None or self.no_navigation:
+            return None
+        if self.navigation is not None:
+            return self.navigation
+        from ..io.dive.open import is_dive
+
+        return recording if recording is not None and is_dive(recording) else None
+
+    def _follow(self, log: Path, rig: "Rig", along: 'Literal["x", "y", "z"]') -> "AbstractMotion":
+        """Follow a log of measurements, and say how it was understood."""
+        from ..survey.navigated import follow_navigation
+
+        motion, said = follow_navigation(
+            log,
+            rig,
+            speed=None if self.speed_mm_s is None else self.speed_mm_s / 1e3,
+            along=along,
+            crs=self.crs,
+            start_time=read_start_time(self.start_time),
+            time_offset=self.time_offset_s,
+            gap=self.gap_s,
+        )
+        tell("navigation", f"{log.name}: {said[0]}")
+        for words in said[1:]:
+            tell("note", words)
+        return motion
 
     def _read_log(self, path: Path) -> "Trajectory":
         """Read the log of poses, and say how it was understood."""
@@ -174,11 +217,13 @@ class MotionFlags:
             tell("note", read.tell_left_out())
         return read.log
 
-    def _check_effect(self) -> None:
+    def _check_effect(self, log: Path | None) -> None:
+        unused = [] if log or self.poses else list(_OF_LOGS)
         if self.poses is None:
-            for name, default in _OF_LOGS.items():
-                if getattr(self, name) != default:
-                    flag = f"--{name.replace('_', '-')}"
-                    raise InputError(f"{flag} goes with --poses; leave it out.")
-        if self.poses is not None and self.along is not None:
+            unused += _OF_POSES
+        for name in unused:
+            if getattr(self, name) != _OF_LOGS.get(name):
+                flag = f"--{name.replace('_', '-')}"
+                raise InputError(f"{flag} goes with --poses; leave it out.")
+        if (self.poses or (log and self.speed_mm_s is None)) and self.along is not None:
             raise InputError("--along goes with --speed-mm-s or --step-mm; leave it out.")

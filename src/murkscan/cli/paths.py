@@ -8,9 +8,10 @@ from cyclopts import Parameter
 from ..errors import FormatError, InputError, MissingResult
 
 
-def _require_recording(_: object, path: Path) -> None:
-    if not path.exists():
-        raise InputError(f"There is no recording at {path}; check the spelling of the path.")
+def _require_recordings(_: object, paths: tuple[Path, ...]) -> None:
+    for path in paths:
+        if not path.exists():
+            raise InputError(f"There is no recording at {path}; check the spelling of the path.")
 
 
 def _require_rig(_: object, path: Path) -> None:
@@ -40,8 +41,8 @@ def require_scan(_: object, path: Path | None) -> None:
         )
 
 
-RecordingPath = Annotated[Path, Parameter(validator=_require_recording)]
-"""A folder of images, or a video."""
+RecordingPaths = Annotated[tuple[Path, ...], Parameter(validator=_require_recordings, negative=())]
+"""A folder of images, a video or its chapters, an MCAP or a bag."""
 RigFile = Annotated[Path, Parameter(validator=_require_rig)]
 """A rig file that is there."""
 LogPath = Annotated[Path, Parameter(validator=_require_log)]

@@ -17,14 +17,14 @@ from ..ui.choices import (
 )
 from ..ui.values import read_box
 from .options import ExecutorFlags, MaybePlace, MotionFlags, RecordingFlags, Settings
-from .paths import RecordingPath, RigFile
+from .paths import RecordingPaths, RigFile
 from .progress import progress_bars
 from .typed import WORDS
 from .words import say
 
 
 def scan(
-    recording: RecordingPath,
+    recording: RecordingPaths,
     *,
     rig: RigFile,
     out: Path,
@@ -46,7 +46,7 @@ def scan(
     Parameters
     ----------
     recording
-        A folder of images, or a video.
+        A folder of images, a video or its chapters in order, or a dive's MCAP or bag.
     rig
         The rig file of the camera and laser that made the recording.
     out
@@ -67,7 +67,7 @@ def scan(
     frames
         Write one cloud a frame for more than 500 frames, too.
     """
-    motion.check()
+    motion.check(recording[0])
     check_settings(settings)
     if volume_m is not None:
         read_box("--volume-m", volume_m)
@@ -81,7 +81,7 @@ def scan(
         project = run(
             reading.open(recording, of_recording),
             of_recording,
-            motion.make(of_recording, laser),
+            motion.make(of_recording, laser, recording[0]),
             out=out,
             extractor=make_extractor(extractor, settings),
             method=make_method(method),

@@ -1,0 +1,94 @@
+"""From a log of measurements, alone or with a speed, to the motion of a scan."""
+
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import InputError
+from ..io.navigation_log import NavigationLog, read_navigation_log
+from ..motion import AbstractMotion, ConstantSpeed, Direction, PoseLog
+from ..motion.reckon import reckon
+from ..types.pose import Pose
+from ..types.rig import Rig
+from ..types.trajectory import Trajectory
+from ..types.water import Water
+
+
+def follow_navigation(
+    path: Path,
+    rig: Rig,
+    *,
+    speed: float | None,
+    along: Direction,
+    crs: str | None = None,
+    start_time: float = 0.0,
+    time_offset: float = 0.0,
+    gap: float = 0.5,
+) -> tuple[AbstractMotion, tuple[str, ...]]:
+    """Make the motion of a scan from what a vehicle's instruments measured.
+
+    With a speed the vehicle moves with it along the camera's axis, turned by the log's attitude,
+    at its depth. Without, the log's poses are followed, or its velocities added up.
+
+    Args:
+        path: The log: an MCAP, a bag, a .tlog, NMEA, or CSV.
+        rig: The rig; its mount says how the camera sits on the vehicle.
+        speed: Speed of the camera along one of its axes [m/s]; None where the log tells.
+        along: The axis.
+        crs: Coordinate system of latitude and longitude; UTM's zone unless given.
+        start_time: Log time at which recording time is 0 [s].
+        time_offset: Added to recording times [s].
+        gap: Longest time between two poses that is bridged [s].
+
+    Returns:
+        The motion, and how the log was taken, in sentences.
+
+    Raises:
+        FormatError: The log holds nothing of use.
+        InputError: It tells neither places nor velocity, and no speed is given.
+        MissingDependency: What reads it is not installed.
+    """
+    salinity = (rig.water or Water()).salinity_psu
+    log = read_navigation_log(path, crs=crs, salinity=salinity, gap=gap, accuracy=rig.navigation)
+    said = [log.understood]
+    if log.unused:
+        said.append(f"not used: {', '.join(log.unused)}")
+    mount = rig.vehicle_from_camera
+    if speed is not None and log.navigation.attitude is None:
+        said.append("the log has no attitude, so the camera moves straight on at the speed given")
+        return ConstantSpeed(speed, along), tuple(said)
+    if mount is None and log.poses is None:
+        said.append(
+            "the rig has no [mount]: its camera's x, y, z are taken for the vehicle's forward, "
+            "starboard, down"
+        )
+    way = _find_way(path, log, mount or Pose.identity(), speed, along, said)
+    motion = PoseLog(way, mount or Pose.identity(), start_time, time_offset, gap, name=str(path))
+    return motion, tuple(said)
+
+
+def _find_way(
+    path: Path,
+    log: NavigationLog,
+    mount: Pose,
+    speed: float | None,
+    along: Direction,
+    said: list[str],
+) -> Trajectory:
+    if speed is not None:
+        if log.poses is not None or log.navigation.velocity is not None:
+            said.append("places and velocities of the log are not used, since a speed is given")
+        axis = np.eye(3)["xyz".index(along)]
+        return reckon(log.navigation, speed * (mount.rotation @ axis))
+    if log.poses is not None:
+        return log.poses
+    if log.navigation.attitude is not None and log.navigation.velocity is not None:
+        said.append("its velocities are added up along its attitude")
+        return reckon(log.navigation)
+    raise InputError(
+        f"{path} tells how the vehicle turned and how deep it was, but neither where it was nor "
+        "how fast; say about how fast with --speed-mm-s."
+        if log.navigation.attitude is not None
+        else f"{path} has no attitude, and no poses; say how fast the camera moved straight on "
+        "with --speed-mm-s, or give a log of poses with --poses."
+    )
