@@ -4,6 +4,7 @@ import base64
 import json
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from pathlib import Path
 
 import av
@@ -35,14 +36,15 @@ class Dive:
     way: Trajectory
     """world_from_vehicle, 10 Hz, of the same clock."""
 
-    @property
+    @cached_property
     def angles(self) -> np.ndarray:
         """Roll, pitch, heading [rad]."""
         turns = Rotation.from_quat(self.way.quaternions, scalar_first=True)
         return turns.as_euler("ZYX")[:, ::-1]
 
-    @property
+    @cached_property
     def rates(self) -> np.ndarray:
+        """Turn rates about the vehicle's axes [rad/s]."""
         turns = Rotation.from_quat(self.way.quaternions, scalar_first=True)
         steps = (turns[:-1].inv() * turns[1:]).as_rotvec() / np.diff(self.way.times)[:, None]
         return np.vstack([steps, steps[-1:]])
@@ -70,10 +72,11 @@ def encode_h264(pictures, rate: float, *, gop: int = 25, crf: int = 18, codec: s
     context = av.CodecContext.create(codec, "w")
     context.width, context.height, context.pix_fmt = width, height, "yuv420p"
     context.time_base, context.framerate = Fraction(1, round(rate)), Fraction(round(rate))
+    every = f"keyint={gop}:repeat-headers=1:bframes=0:scenecut=0:annexb=1"
     context.options = {
         "crf": str(crf), "preset": "fast", "tune": "zerolatency", "g": str(gop), "bf": "0",
-        "threads": "1", "x264-params": f"keyint={gop}:repeat-headers=1:bframes=0:annexb=1",
-        "x265-params": f"keyint={gop}:repeat-headers=1:bframes=0:annexb=1:log-level=none",
+        "threads": "1", "x264-params": every,
+        "x265-params": f"{every}:log-level=none",
     }  # fmt: skip
     packets = []
     for number, picture in enumerate(pictures):
@@ -163,10 +166,8 @@ def write_blueos(
 ) -> None:
     """Write an MCAP as BlueOS does: MAVLink as JSON, video as CDR or JSON.
 
-    Args:
-        flaws: What the recorder does to times.
-        position: Whether the vehicle knows where it is.
-        repeats: How often the dive is repeated, one after another.
+    `position` is whether the vehicle knows where it is; `form` what the recorder calls the codec;
+    with `repeats` the dive is written several times, one after another.
     """
     from mcap.writer import CompressionType, Writer
 

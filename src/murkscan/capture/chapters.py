@@ -52,9 +52,10 @@ def find_chapters(paths: Sequence[Path]) -> list[Path]:
     names = [_GOPRO.fullmatch(file.stem) for file in videos]
     recordings = {name[3] for name in names if name}
     if len(recordings) > 1 and all(names):
+        numbers = ", ".join(sorted(recordings))
         raise FormatError(
-            f"{path} holds chapters of {len(recordings)} recordings ({', '.join(sorted(recordings))}"
-            "); name the files of one, in order."
+            f"{path} holds chapters of {len(recordings)} recordings ({numbers}); name the files of "
+            "one, in order."
         )
     return sorted(videos, key=_chapter_key)
 

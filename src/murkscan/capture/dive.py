@@ -200,8 +200,9 @@ def _say_clock(contents: DiveContents, index: PictureIndex) -> tuple[str, ...]:
     ]
     if index.jitter:
         said.append(
-            f"its pictures are stamped as they arrived, uneven by {index.jitter * 1e3:.0f} ms (1σ); "
-            "their times are smoothed, but how late all of them are is not known (--time-offset-s)"
+            f"its pictures are stamped as they arrived, uneven by {index.jitter * 1e3:.0f} ms "
+            "(1σ); their times are smoothed, but how late all of them are is not known "
+            "(--time-offset-s)"
         )
     return tuple(said)
 

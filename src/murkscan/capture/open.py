@@ -11,7 +11,7 @@ import av
 
 from ..errors import FormatError, InputError
 from ..io.dive.contents import read_contents
-from ..io.dive.open import is_dive
+from ..io.dive.names import is_dive
 from ..io.picture_notes import count_pages
 from ..types.arrays import Image
 from .base import AbstractRecording

@@ -182,7 +182,7 @@ class MotionFlags:
             return None
         if self.navigation is not None:
             return self.navigation
-        from ..io.dive.open import is_dive
+        from ..io.dive.names import is_dive
 
         return recording if recording is not None and is_dive(recording) else None
 

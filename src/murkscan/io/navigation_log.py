@@ -13,7 +13,7 @@ from ..types.navigation import Navigation, NavigationAccuracy, Readings
 from ..types.trajectory import Trajectory
 from .clock_times import say_moment
 from .dive.contents import read_contents
-from .dive.open import is_dive
+from .dive.names import is_dive
 from .dive.series import Series, SeriesKind
 from .navigation_csv import read_navigation_csv
 from .nmea import is_nmea, read_nmea

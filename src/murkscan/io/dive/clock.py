@@ -81,6 +81,28 @@ def find_jumps(log: Ticks, messages: Ticks, other: Scalars) -> list[tuple[int, f
     return jumps
 
 
+def refine_steps(
+    steps: Sequence[tuple[int, float]], log: Ticks, messages: Ticks, other: Scalars
+) -> list[tuple[int, float]]:
+    """Measure steps that are known against another clock: by medians, which no late message moves.
+
+    Args:
+        steps: As `find_steps_back` gives them.
+        log: Times of all messages [ns], steps and all.
+        messages: Numbers of those that carry the other clock's time.
+        other: That time [s].
+    """
+    offsets = (log[messages] - log[messages[0]]) / 1e9 - other
+    refined = list[tuple[int, float]]()
+    for message, size in steps:
+        at = int(np.searchsorted(messages, message))
+        before, after = offsets[max(at - _WINDOW // 2, 0) : at], offsets[at : at + _WINDOW // 2]
+        better = float(np.median(after) - np.median(before)) if len(before) and len(after) else size
+        # Where the other clock began anew as well, it tells nothing.
+        refined.append((message, better if abs(better - size) < _JUMP else size))
+    return refined
+
+
 def take_out(log: Ticks, steps: Sequence[tuple[int, float]]) -> Ticks:
     """Give times [ns] without steps."""
     mended = log.copy()

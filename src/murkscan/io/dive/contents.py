@@ -15,6 +15,7 @@ from .clock import (
     ClockStep,
     find_jumps,
     find_steps_back,
+    refine_steps,
     smooth_arrival,
     take_out,
     time_by_other,
@@ -231,10 +232,8 @@ class _Gathering:
 
     def _conclude(self, num_bytes: int) -> DiveContents:
         log, which = np.array(self._log, np.int64), np.array(self._which)
-        steps = find_steps_back(log)
+        steps = self._find_steps(log)
         mended = take_out(log, steps)
-        jumps = self._find_jumps(mended)
-        steps, mended = sorted([*steps, *jumps]), take_out(mended, jumps)
         pictures = tuple(
             self._index(camera, log, mended, steps) for camera in self._cameras.values()
         )
@@ -258,15 +257,18 @@ class _Gathering:
             num_bytes,
         )
 
-    def _find_jumps(self, log: Int[np.ndarray, " n"]) -> list[tuple[int, float]]:
-        """Compare the log's clock with the autopilot's."""
+    def _find_steps(self, log: Int[np.ndarray, " n"]) -> list[tuple[int, float]]:
+        """Find steps of the log's clock, in itself and against the autopilot's."""
+        steps = find_steps_back(log)
         clocks = [o for o in self._instruments.values() if np.isfinite(np.array(o.boots)).any()]
         if not clocks:
-            return []
+            return steps
         longest = max(clocks, key=lambda one: len(one.messages))
         boots = np.array(longest.boots)
         known = np.isfinite(boots)
-        return find_jumps(log, np.array(longest.messages)[known], boots[known])
+        carriers, boots = np.array(longest.messages)[known], boots[known]
+        steps = refine_steps(steps, log, carriers, boots)
+        return sorted([*steps, *find_jumps(take_out(log, steps), carriers, boots)])
 
     def _index(
         self,

@@ -3,31 +3,21 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
 
 from ...errors import FormatError, InputError
 from .mcap_file import read_mcap
 from .messages import Message, Tell, Topic
+from .names import KINDS, METADATA, DiveKind
 from .ros1_bag import read_ros1
 from .ros2_database import read_ros2
 from .tlog import read_tlog
 
-Kind = Literal["MCAP", "bag of ROS 1", "bag of ROS 2", "tlog"]
 _READERS = {
     "MCAP": read_mcap,
     "bag of ROS 1": read_ros1,
     "bag of ROS 2": read_ros2,
     "tlog": read_tlog,
 }
-_KINDS: dict[str, Kind] = {
-    ".mcap": "MCAP",
-    ".bag": "bag of ROS 1",
-    ".active": "bag of ROS 1",
-    ".db3": "bag of ROS 2",
-    ".tlog": "tlog",
-}
-_METADATA = "metadata.yaml"
-"""The file by which a folder is a bag of ROS 2."""
 _FILE = 1 << 48
 """Places of the second file of a bag begin here: larger than any file."""
 
@@ -37,7 +27,7 @@ class DiveFile:
     """A file of messages, or the files of a bag in their order."""
 
     path: Path
-    kind: Kind
+    kind: DiveKind
     files: tuple[Path, ...]
     topics: tuple[dict[int, Topic], ...] = field(compare=False)
     """Of each file the topics that were met, by their numbers there."""
@@ -62,13 +52,6 @@ class DiveFile:
             place = 0
 
 
-def is_dive(path: Path) -> bool:
-    """Tell by its name whether a file, or a folder by what lies in it, is a dive's recording."""
-    if path.is_dir():
-        return (path / _METADATA).is_file()
-    return path.suffix.lower() in _KINDS
-
-
 def open_dive(path: Path) -> DiveFile:
     """Find out what a dive's recording is; nothing of it is read yet.
 
@@ -79,11 +62,11 @@ def open_dive(path: Path) -> DiveFile:
     if not path.exists():
         raise InputError(f"There is no recording at {path}; check the spelling of the path.")
     if not path.is_dir():
-        kind = _KINDS.get(path.suffix.lower())
+        kind = KINDS.get(path.suffix.lower())
         if kind is None:
             raise FormatError(
-                f"{path} is no recording of a dive: those end in {', '.join(_KINDS)}, or are a "
-                f"folder with {_METADATA}."
+                f"{path} is no recording of a dive: those end in {', '.join(KINDS)}, or are a "
+                f"folder with {METADATA}."
             )
         return DiveFile(path, kind, (path,), ({},))
     files = sorted(
@@ -95,7 +78,7 @@ def open_dive(path: Path) -> DiveFile:
             f"{path} holds no .mcap and no .db3"
             + (f", only {packed[0]}: unpack it with `zstd -d`." if packed else ".")
         )
-    kinds = {_KINDS[file.suffix] for file in files}
+    kinds = {KINDS[file.suffix] for file in files}
     if len(kinds) > 1:
         raise FormatError(f"{path} holds .mcap and .db3; sort the two recordings apart.")
     return DiveFile(path, kinds.pop(), tuple(files), tuple({} for _ in files))
