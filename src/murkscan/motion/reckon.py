@@ -9,9 +9,11 @@ from ..types.arrays import Scalars, Vector
 from ..types.navigation import Navigation, Readings
 from ..types.trajectory import Trajectory
 
-_SMOOTH = 1.0
-"""Time over which a depth is smoothed, one standard deviation [s]: slower than the steps of a
-pressure gauge, faster than speeds add up to a wrong depth."""
+_SMOOTH = 0.3
+"""Time over which a depth is smoothed, one standard deviation [s]: longer than between readings of
+10 Hz, and short enough to keep nine tenths of a heave of four seconds."""
+_EVEN = 0.05
+"""Step of the times at which it is smoothed [s]."""
 
 
 def reckon(navigation: Navigation, velocity: Vector | None = None) -> Trajectory:
@@ -59,6 +61,6 @@ def _cut(times: Scalars, turns: Rotation, measured: Readings) -> tuple[Scalars, 
 def _hold_depth(times: Scalars, reckoned: Scalars, depth: Readings) -> Scalars:
     """Give the reckoned depth its slow part from the gauge."""
     away = np.interp(times, depth.times, depth.values[:, 0]) - reckoned
-    even = np.arange(times[0], times[-1] + 0.1, 0.1)
-    slow = gaussian_filter1d(np.interp(even, times, away), _SMOOTH / 0.1, mode="nearest")
+    even = np.arange(times[0], times[-1] + _EVEN, _EVEN)
+    slow = gaussian_filter1d(np.interp(even, times, away), _SMOOTH / _EVEN, mode="nearest")
     return reckoned + np.interp(times, even, slow)
