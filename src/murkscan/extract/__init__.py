@@ -4,6 +4,8 @@ Every extractor is a frozen dataclass: its fields are its settings, `learn` and 
 """
 
 from .base import AbstractExtractor as AbstractExtractor
+from .checked import check_stripes as check_stripes
+from .checked import require_extractor as require_extractor
 from .gaussian_fit import GaussianFit as GaussianFit
 from .gray_gravity import GrayGravity as GrayGravity
 from .murk import Murk as Murk

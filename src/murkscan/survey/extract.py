@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from ..capture import AbstractRecording
 from ..distribute import AbstractExecutor, Threads
 from ..errors import InputError
-from ..extract import AbstractExtractor
+from ..extract import AbstractExtractor, check_stripes, require_extractor
 from ..project import EXTRACT, ExtractResult, PartNote, Project, describe
 from ..types.arrays import ColourImage
 from ..types.background import Background
@@ -44,10 +44,12 @@ def extract_recording(
         progress: Told of each part.
 
     Raises:
-        InputError: The recording is not of this rig.
+        InputError: The recording is not of this rig, or the extractor, perhaps one's own, gives
+            what cannot be.
         FormatError: Nothing of the recording can be read.
         DeviceError: The disk is full.
     """
+    require_extractor(extractor)
     check_recording(recording, rig, laser)
     stage = project.stage(
         EXTRACT,
@@ -108,7 +110,9 @@ class _Job:
 
     def find(self, chunk: Chunk) -> _Part:
         """Find the stripes of one part."""
-        stripes = self.extractor.extract(chunk.frames, self.rig, self.background, laser=self.laser)
+        given = self.extractor.extract(chunk.frames, self.rig, self.background, laser=self.laser)
+        size, laser = self.rig.camera.size, self.laser
+        stripes = check_stripes(self.extractor, given, chunk.frames, size=size, laser=laser)
         found = [
             (frame, stripe)
             for frame, stripe in zip(chunk.frames, stripes, strict=True)

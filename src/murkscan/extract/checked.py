@@ -1,0 +1,109 @@
+"""What an extractor gave, looked at before it is believed: it may be one's own."""
+
+import dataclasses
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..errors import InputError
+from ..types.frame import Frame
+from ..types.stripe import Stripe, empty_stripe
+from .base import AbstractExtractor
+
+_MISCOUNTED = (
+    "{name} must give one stripe a frame, of length 0 where there is none; of {frames} frames it "
+    "gave {given}."
+)
+_EDGE = 0.5
+"""How far a pixel reaches from its centre [px]."""
+_EMPTY = empty_stripe()
+"""What the columns are like."""
+
+
+def require_extractor(extractor: AbstractExtractor) -> None:
+    """Refuse an extractor whose settings cannot be written down.
+
+    Raises:
+        InputError: It is no frozen dataclass.
+    """
+    if not dataclasses.is_dataclass(extractor):
+        raise InputError(
+            f"{type(extractor).__name__} must be a dataclass (@dataclass(frozen=True)): its fields "
+            "are its settings, by which a scan knows whether it is up to date."
+        )
+
+
+def check_stripes(
+    extractor: AbstractExtractor,
+    stripes: Iterable[Stripe],
+    frames: Sequence[Frame],
+    *,
+    size: tuple[int, int],
+    laser: int,
+) -> Iterator[Stripe]:
+    """Pass stripes on, one a frame, as long as they can be.
+
+    Args:
+        extractor: Who gives them, for the message.
+        stripes: What it gives.
+        frames: What it was given.
+        size: Width and height of the full frame [px].
+        laser: Number of the laser whose stripe was looked for.
+
+    Yields:
+        The same, in the types that tables keep.
+
+    Raises:
+        InputError: One of them cannot be; the message names the extractor, the frame and the fault.
+    """
+    name, given = type(extractor).__name__, iter(stripes)
+    for count, frame in enumerate(frames):
+        if (stripe := next(given, None)) is None:
+            raise InputError(_MISCOUNTED.format(name=name, frames=len(frames), given=count))
+        if not isinstance(stripe, Stripe):
+            fault = f"is a {type(stripe).__name__}, no Stripe"
+        else:
+            fault = _find_fault(stripe, frame, size, laser)
+        if fault:
+            raise InputError(f"{name}: what it gave for frame {frame.index} {fault}.")
+        yield _as_kept(stripe)
+    if next(given, None) is not None:
+        raise InputError(_MISCOUNTED.format(name=name, frames=len(frames), given="more"))
+
+
+def _find_fault(stripe: Stripe, frame: Frame, size: tuple[int, int], laser: int) -> str:
+    """Say in half a sentence why a stripe cannot be; nothing where it can."""
+    count = len(stripe.frame)
+    columns = {f.name: np.asarray(getattr(stripe, f.name)) for f in dataclasses.fields(stripe)}
+    for name, values in columns.items():
+        shape = (count, 2) if name == "pixels" else (count,)
+        if values.shape != shape:
+            return f"has {name} of shape {values.shape}, not {shape}"
+        if not np.isfinite(values).all():
+            return f"has a {name} that is no finite number"
+    inside = (columns["pixels"] >= -_EDGE) & (columns["pixels"] <= np.array(size) - _EDGE)
+    faults = {
+        "belongs to another frame": (columns["frame"] != frame.index).any(),
+        "has another time": (columns["time"] != frame.time).any(),
+        f"has another laser than {laser}": (columns["laser"] != laser).any(),
+        f"lies outside of the picture of {size[0]} × {size[1]} px": not inside.all(),
+        "has a sigma that is not above 0": (columns["sigma"] <= 0).any(),
+        "has a posterior that is no probability": not _are_shares(columns["posterior"]),
+    }
+    return next((fault for fault, is_there in faults.items() if is_there), "")
+
+
+def _are_shares(values: np.ndarray) -> bool:
+    return bool(((values >= 0) & (values <= 1)).all())
+
+
+def _as_kept(stripe: Stripe) -> Stripe:
+    """Give the columns the types that tables keep."""
+    columns: dict[str, Any] = {
+        f.name: np.asarray(getattr(stripe, f.name)).astype(
+            getattr(_EMPTY, f.name).dtype, copy=False
+        )
+        for f in dataclasses.fields(stripe)
+    }
+    return Stripe(**columns)
