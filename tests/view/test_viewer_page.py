@@ -192,6 +192,31 @@ def test_what_the_points_share_counts_as_far_as_it_stretches_a_length(page, turn
     assert shared == pytest.approx(expected, abs=0.006)
 
 
+def test_what_is_measured_can_be_copied_as_the_command_that_measures_it(page, steps):
+    ends = [20, 3000]
+    page.evaluate("ends => murkscan.measure(...ends)", ends)
+    words = page.locator(".measures .copy").get_attribute("title").split()
+    assert words[:4] == ["murkscan", "measure", "OUT", "distance"]
+    named = dict(zip(words[4::2], words[5::2], strict=True))
+    places = [[float(x) for x in named[flag].split(",")] for flag in ("--from-m", "--to-m")]
+    np.testing.assert_allclose(places, steps[1].points[ends], atol=3e-5)  # the page's rounding
+    page.keyboard.press("c")
+    words = page.locator("#tool-cut .copy").get_attribute("title").split()
+    point, normal = ([float(x) for x in words[k].split(",")] for k in (5, 7))
+    places = page.evaluate("Array.from(murkscan.section.places.slice(0, 3))")
+    centre = page.evaluate("murkscan.model.centre")
+    assert np.dot(np.subtract(np.add(places, centre), point), normal) == pytest.approx(0, abs=2e-5)
+
+
+def test_places_are_in_metres_and_lengths_in_millimetres(page, steps):
+    page.evaluate("murkscan.update({read: 20})")
+    said = page.locator("#reading").inner_text()
+    place = [float(f"{'-' if sign else ''}{number}") for sign, number in
+             re.findall(r"[xyz] (−?)([\d.]+) m\b", said)]  # fmt: skip
+    np.testing.assert_allclose(place, steps[1].points[20], atol=3e-5)
+    page.evaluate("murkscan.update({read: null})")
+
+
 def test_escape_stops_measuring_and_keeps_what_was_measured(page, steps):
     page.keyboard.press("m")
     for place in (0, -1):

@@ -122,7 +122,7 @@ def _load(project: "Project", path: Path, unit: Unit, as_given: bool) -> "Refere
 
 def _print_dents(search: "DentSearch") -> None:
     if search.dents:
-        columns = ("", "x [mm]", "y [mm]", "z [mm]", "depth [mm]", "diameter [mm]", "volume [cm³]")
+        columns = ("", "x [m]", "y [m]", "z [m]", "depth [mm]", "diameter [mm]", "volume [cm³]")
         print_table("Dents (±95%)", columns, [_row(dent) for dent in search.dents])
     else:
         say("No dent was found.")
@@ -139,7 +139,7 @@ def _print_dents(search: "DentSearch") -> None:
 
 def _row(dent: "Dent") -> tuple[str, ...]:
     place = [
-        f"{1e3 * at:.1f} ± {1.96e3 * sigma:.1f}"
+        f"{at:.4f} ± {1.96 * sigma:.4f}"
         for at, sigma in zip(dent.place.tolist(), dent.sigma_place.tolist(), strict=True)
     ]
     return (

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 _SHOWN = {"m": ("mm", 1e3), "m2": ("cm²", 1e4), "m3": ("cm³", 1e6), "rad": ("°", 180 / math.pi)}
 """Units as people read them, and how many go into ours."""
+_PLACES = ("x", "y", "z")
+"""Coordinates, which are in metres as flags take them; lengths are in millimetres."""
 _DIGITS = 6
 """Digits behind the point, at most: a nanometre, or what a hair's width is of a hundred metres."""
 _FARTHEST = 1e8
@@ -136,6 +138,8 @@ def _tell_common(out: Path, found: "Measurement") -> None:
 
 def _row(quantity: "Quantity") -> tuple[str, ...]:
     unit, scale = _SHOWN.get(quantity.unit, (quantity.unit, 1.0))
+    if quantity.name in _PLACES:
+        unit, scale = "m", 1.0
     half, common = scale * quantity.half_width, quantity.sigma_common
     # Set, as one coordinate of a cylinder's axis is, or given by the others, as of a direction.
     if half < 0.5 * 10.0**-_DIGITS:

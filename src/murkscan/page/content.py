@@ -59,6 +59,8 @@ class Picture:
     path: str
     """Relative to the page, with forward slashes."""
     caption: str
+    link: str = ""
+    """What a click opens, relative to the page; the picture itself unless given."""
 
 
 @final
@@ -69,6 +71,8 @@ class Gallery:
     kind: ClassVar[str] = "gallery"
     pictures: Sequence[Picture]
     is_first_large: bool = False
+    is_in_pairs: bool = False
+    """Whether two stand beside one another to be compared, as large as the page allows."""
 
 
 @final

@@ -34,7 +34,7 @@ TRIANGULATE = Kind("triangulate", TriangulateResult, meaning=2)
 MOTION = Kind("motion", MotionResult, meaning=1)
 CLOUD = Kind("cloud", CloudResult, meaning=2)
 MESH = Kind("mesh", MeshResult, meaning=1)
-VIEW = Kind("view", ViewResult, meaning=1)
+VIEW = Kind("view", ViewResult, meaning=2)
 REPORT = Kind("report", ReportResult, meaning=2)
 
 STAGES: tuple[Kind[Any], ...] = (EXTRACT, TRIANGULATE, MOTION, CLOUD, MESH, VIEW, REPORT)

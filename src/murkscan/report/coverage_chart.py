@@ -28,7 +28,7 @@ NAMES = {
     "unreadable": "frame could not be read",
     "too_fast": "too fast: profiles too far apart",
     "too_far": "too far for this water and light",
-    "occluded": "hidden behind an edge",
+    "occluded": "hidden by an edge, from the laser or from the camera",
     "too_dark": "no light came back from near enough: too dark, too steep, or nothing there",
     "far_or_dark": "no light came back: too far or too dark, which cannot be told here",
 }
@@ -36,6 +36,8 @@ _WIDTH = 9.6
 """Width of the figure [inch]: over the page's whole width its text is as high as elsewhere."""
 _LEAST, _MOST = 1.3, 6.5
 """Height of the map [inch]; what is longer or narrower is not drawn to scale."""
+_SHORT = 50
+"""Letters of a label of which two stand side by side under the map."""
 _LONG = 4.0
 """Extent from which the axes count metres [m]."""
 
@@ -96,7 +98,7 @@ def _add_legend(coverage: Coverage, axes: "Axes") -> None:
     axes.figure.legend(
         handles=patches,
         loc="outside lower left",
-        ncols=2,
+        ncols=1 if any(len(str(patch.get_label())) > _SHORT for patch in patches) else 2,
         labelcolor=INK,
         frameon=False,
         handlelength=1.0,

@@ -56,7 +56,8 @@ def coverage_blocks(coverage: Coverage, *, is_asked: bool) -> list[Block]:
         f"Gaps are judged by a spacing of {1e3 * coverage.wanted:.3g} mm, which {told}. Where "
         f"neighbours on a scan line lie more than {1e3 * coverage.hole:.3g} mm apart, what is "
         "between them is missing. What lies outside of all profiles is not known to be a surface "
-        "and is not counted; areas are as seen from the scanner."
+        "and is not counted; areas are as seen from the scanner. Where the model is white, "
+        "this map says why."
     )
     return [
         Note(text),

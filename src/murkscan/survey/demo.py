@@ -13,7 +13,7 @@ from ..io.mesh_files import load_mesh
 from ..io.rig_toml import load_rig
 from ..io.text import save_text
 from ..motion import ConstantSpeed
-from ..page import Gallery, Picture, Section, Table, render_page
+from ..page import Gallery, Note, Picture, Section, Table, render_page
 from ..project import Key, Kind, Project, Stage, enter_all, hold
 from ..simulate import as_standalone, parse_scene, read_scene
 from ..types.arrays import Scalars
@@ -26,8 +26,14 @@ _SPEED = 0.1
 """Of the camera in that scene [m/s]."""
 FALSE = 0.01
 """Distance from the truth beyond which a point is false: a particle, or a ghost [m]."""
+_NEXT = (
+    f"False points lie more than {FALSE * 1e3:g} mm off the true hull. White is where no point was "
+    "measured: an edge hid the surface from the laser or from the camera, or no light came back. "
+    "How the scan by murk went, and how far to trust it, stands in scan/report/index.html."
+)
 _MEANING = 1
 """Of the recording that is simulated; another one is made when it changes."""
+_TURN = "the surface, coloured by its distance from the camera; click to turn and measure it"
 _COMPARED = 20_000
 """Points of the cloud that are held against the truth."""
 
@@ -147,8 +153,8 @@ def _page(ours: Compared, paper: Compared) -> str:
         (
             one.name,
             len(one.project.load_cloud()),
-            f"{one.errors.false / max(one.errors.count, 1):.1%}",
-            f"{1e3 * one.errors.rms:.2f} mm",
+            round(100 * one.errors.false / max(one.errors.count, 1), 1),
+            round(1e3 * one.errors.rms, 2) if np.isfinite(one.errors.rms) else None,
         )
         for one in (paper, ours)
     ]
@@ -156,16 +162,17 @@ def _page(ours: Compared, paper: Compared) -> str:
     common = sorted(overlays[0] & overlays[1])
     shown = [f"extract/overlay/{name}.png" for name in common[len(common) // 2 :][:1]]
     pictures = [
-        Picture(f"{one.project.root.name}/{path}", f"{caption}, by {one.name}")
-        for path, caption in [
-            *((path, "what was found in one frame") for path in shown),
-            ("view/isometric-depth.png", "the surface, coloured by depth"),
+        Picture(f"{folder}/{path}", f"{one.name}: {caption}", f"{folder}/{opens}" if opens else "")
+        for path, caption, opens in [
+            ("view/front-depth.png", _TURN, "view/index.html"),
+            *((path, "what was found in one frame", "") for path in shown),
         ]
         for one in (paper, ours)
+        for folder in [one.project.root.name]
     ]
-    head = ("", "points", f"false: more than {FALSE * 1e3:g} mm off", "RMS of the others")
+    head = ("", "points", "false [%]", "RMS of the others [mm]")
     return render_page(
         "One recording, scanned in two ways",
-        [Section("", [Table(rows, head), Gallery(pictures)])],
-        subtitle="A ship model's hull in water of 3 attenuations per metre, simulated",
+        [Section("", [Table(rows, head), Note(_NEXT), Gallery(pictures, is_in_pairs=True)])],
+        subtitle="A ship model's hull in water in which a diver sees a metre and a half, simulated",
     )

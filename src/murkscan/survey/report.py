@@ -32,6 +32,7 @@ from ..report import (
     summarise,
     with_coverage,
 )
+from ..view import PICTURES
 from .merged_report import summarise_merged
 from .progress import Progress, silent
 from .recorded import tell_recording
@@ -145,7 +146,7 @@ def _summarise(project: Project, spacing: float | None) -> ScanSummary:
 
 def _pictures(project: Project) -> list[Shown]:
     views = [
-        Shown(f"../view/{name}.png", name.replace("-", ", coloured by "))
+        Shown(f"../view/{name}.png", PICTURES.get(name, name))
         for name in project.finished(VIEW).result.pictures
     ]
     found = [  # none where passes were merged

@@ -133,7 +133,7 @@ def _pictures_page(title: str, names: list[str]) -> str:
     if not names:
         note = Note("There is no surface to draw: no stripe was found in two frames or more.")
         return render_page("Pictures", [Section("", [note])], subtitle=title)
-    pictures = [Picture(f"{name}.png", name.replace("-", ", coloured by ")) for name in names]
+    pictures = [Picture(f"{name}.png", PICTURES[name]) for name in names]
     gallery = Gallery(pictures, is_first_large=True)
     return render_page("Pictures", [Section("", [gallery])], subtitle=title)
 

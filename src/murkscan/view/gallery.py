@@ -14,11 +14,18 @@ from .render import fit_and_draw
 from .subject import Subject
 from .views import View, standard_views
 
-PICTURES = (
-    *("isometric", "isometric-depth", "front", "front-depth"),
-    *("back", "left", "right", "top", "bottom"),
-)
-"""Names of the pictures, in the order to show them."""
+PICTURES = {
+    "isometric": "aslant from above",
+    "isometric-depth": "aslant from above, coloured by the distance from the camera",
+    "front": "from the front, as the camera sees it",
+    "front-depth": "from the front, coloured by the distance from the camera",
+    "back": "from behind",
+    "left": "from the left",
+    "right": "from the right",
+    "top": "from above",
+    "bottom": "from below",
+}
+"""Names of the pictures, in the order to show them, and what stands under each."""
 _THREADS = 2
 """Pictures that are drawn at once; each takes 0.2 GB while it is."""
 

@@ -1,7 +1,8 @@
 // A plane that takes a part away, and the line that it draws on the rest.
 
-import { choice, make, setPressed } from "./dom.js";
-import { length } from "./numbers.js";
+import { copyButton, folderOf, numbersOf } from "./command.js";
+import { make, setPressed } from "./dom.js";
+import { place } from "./numbers.js";
 import { extentAlong, meetPoints, meetTriangles, planeAxes } from "./section.js";
 import { drawSection } from "./section_drawing.js";
 
@@ -22,7 +23,8 @@ export function cutTool(app) {
   const where = make("output");
   const drawing = make("figure", { className: "section", "aria-label": "Section" });
   const save = make("button", { type: "button", textContent: "Save section as SVG", onclick: saveSection });
-  const more = make("div", {}, make("label", {}, "From ", axis), slider, where, drawing, save);
+  const copying = make("div", {});
+  const more = make("div", {}, make("label", {}, "From ", axis), slider, where, drawing, save, copying);
   const element = make("div", {}, make("div", { className: "row" }, toggle, flip), more);
 
   function saveSection() {
@@ -30,6 +32,13 @@ export function cutTool(app) {
     const address = URL.createObjectURL(new Blob([text], { type: "image/svg+xml" }));
     make("a", { href: address, download: "section.svg" }).click();
     setTimeout(() => URL.revokeObjectURL(address), 1000);
+  }
+
+  // The plane lies `at` its normal from the world's origin.
+  function command() {
+    const { normal } = app.section.axes;
+    const point = numbersOf(normal.map((x) => x * app.section.at));
+    return `murkscan measure ${folderOf(app)} section --point-m ${point} --normal ${numbersOf(normal)}`;
   }
 
   let drawn = null; // redrawn only when the plane has moved
@@ -43,12 +52,13 @@ export function cutTool(app) {
       make("option", { value, textContent: label })));
     axis.value = cut.axis;
     slider.value = cut.share * 1000;
-    where.textContent = length(app.section.at, 1);
+    where.textContent = place(app.section.at);
     if (app.section === drawn) return;
     drawn = app.section;
     const svg = drawSection(app.section.places, app.section.axes, app.section.isLines, "currentColor");
     drawing.innerHTML = svg ?? "<p class='note'>The plane meets nothing here.</p>";
-    save.hidden = !svg;
+    save.hidden = copying.hidden = !svg;
+    copying.replaceChildren(copyButton(command()));
   }
   return { name: "cut", title: "Cut", element, sync };
 }

@@ -27,6 +27,14 @@ const HELP = [
   ["?", "this help"],
 ];
 
+const ABOUT = [
+  "Lengths are in millimetres, places in metres along the world's axes, as commands take and give them.",
+  "Places are rounded as the line under the title says, values to a 65 000th of their range, the "
+    + "directions that shade the surface to a quarter of a degree. cloud.ply has all digits.",
+  "White slits and gaps are places without a point: an edge hid them from the laser or from the camera, no "
+    + "light came back, or the camera went too fast. The report's map says which. Nothing is made up there.",
+];
+
 export function startKeys(app) {
   const names = Object.keys(app.model.views);
   const { stage } = app;
@@ -64,7 +72,10 @@ export function makeHelp() {
   const rows = HELP.flatMap(([keys, meaning]) =>
     [make("dt", { textContent: keys }), make("dd", { textContent: meaning })]);
   const close = make("button", { type: "button", textContent: "Close", onclick: () => help.close() });
-  help.append(make("h2", { textContent: "Keys and gestures" }), make("dl", {}, ...rows), close);
+  help.append(
+    make("h2", { textContent: "Keys and gestures" }), make("dl", {}, ...rows),
+    make("h2", { textContent: "What the page shows" }),
+    ...ABOUT.map((textContent) => make("p", { textContent })), close);
   help.addEventListener("click", (event) => { if (event.target === help) help.close(); });
   return help;
 }

@@ -1,7 +1,8 @@
 // Distances between two points, drawn on the picture and listed.
 
+import { copyButton, folderOf, numbersOf } from "./command.js";
 import { make, setPressed } from "./dom.js";
-import { pointOf } from "./model.js";
+import { pointOf, worldPlace } from "./model.js";
 import { length } from "./numbers.js";
 
 export function measureTool(app) {
@@ -28,7 +29,7 @@ export function measureTool(app) {
     list.replaceChildren(...mine.map(describe));
   }
 
-  function describe({ length: metres, step, off, shared }) {
+  function describe({ first, second, length: metres, step, off, shared }) {
     const parts = ["x", "y", "z"].map((name, k) => `Δ${name}\u00a0${length(step[k])}`).join("  ");
     const item = make("li", {}, make("b", { textContent: length(metres) }), ` ${doubt(off)}`,
       make("small", { textContent: parts }), make("small", {
@@ -40,7 +41,13 @@ export function measureTool(app) {
           : `The calibration's part of it: ± ${length(shared)}.`,
       }));
     }
+    item.append(copyButton(commandOf(first, second)));
     return item;
+  }
+
+  function commandOf(first, second) {
+    const [from, to] = [first, second].map((i) => numbersOf(worldPlace(app.model, pointOf(app.model, i))));
+    return `murkscan measure ${folderOf(app)} distance --from-m ${from} --to-m ${to}`;
   }
   return { name: "measure", title: "Measure", element, sync };
 }

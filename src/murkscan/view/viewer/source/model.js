@@ -3,6 +3,9 @@
 import { takeText, unpack } from "./unpack.js";
 
 const NO_CODE = 65535;
+// A place of the picture as the world has it [m].
+export const worldPlace = (model, place) => place.map((x, axis) => x + model.centre[axis]);
+
 export const NO_VALUE = -1e30; // a shader cannot be trusted with NaN
 
 export async function loadModel(about, number, centre) {

@@ -14,6 +14,9 @@ export function length(metres, digits = 2) {
   return Math.abs(metres) < 10 ? `${grouped(metres * 1e3, digits)} mm` : `${grouped(metres, 4)} m`;
 }
 
+// A place in the world: metres, as commands take it.
+export const place = (metres) => `${grouped(metres, 5)} m`;
+
 export function valueText(value, unit) {
   const size = Math.abs(value);
   const digits = size >= 1000 ? 1 : size >= 1 ? 2 : 3;

@@ -1,7 +1,7 @@
 // Clicks and taps on the model: to measure, to read a point, to turn about it.
 
-import { NO_VALUE, pointOf } from "./model.js";
-import { length, valueText } from "./numbers.js";
+import { NO_VALUE, pointOf, worldPlace } from "./model.js";
+import { place, valueText } from "./numbers.js";
 import { pick } from "./pick.js";
 import { wordFor } from "./words.js";
 
@@ -58,8 +58,8 @@ export function showReading(app) {
   element.hidden = read === null;
   if (read === null) return;
   const { model } = app;
-  const place = pointOf(model, read).map((x, k) => `${"xyz"[k]} ${length(x + model.centre[k])}`);
+  const places = worldPlace(model, pointOf(model, read)).map((x, k) => `${"xyz"[k]} ${place(x)}`);
   const known = model.layers.filter(({ name }) => model.values[name][read] !== NO_VALUE)
     .map(({ name, unit }) => `${wordFor(name)} ${valueText(model.values[name][read], unit)}`);
-  element.textContent = [...place, ...known, `profile ${model.moments[read] + 1}`].join("  ·  ");
+  element.textContent = [...places, ...known, `profile ${model.moments[read] + 1}`].join("  ·  ");
 }
