@@ -19,9 +19,10 @@ def finish(
     *,
     inputs: Mapping[str, Any] | None = None,
     make: Callable[[], object] = lambda: None,
+    label: str = "",
 ) -> Stage[Any]:
     """Finish a stage with a result and with the files that `make` saves."""
-    stage = project.stage(kind, settings={}, inputs=inputs or {})
+    stage = project.stage(kind, settings={}, inputs=inputs or {}, label=label)
     stage.begin()
     make()
     stage.finish(result, since=time.monotonic())

@@ -88,7 +88,7 @@ def test_a_scan_beside_its_own_surface_shifted_by_a_millimetre_deviates_by_it(sc
     made = {file.name for file in (scanned / "measure").glob("deviation*")}
     assert made == {
         "deviation.json", "deviation.ply", "deviation.csv", "deviation-front.png",
-        "deviation-isometric.png", "deviation-histogram.png",
+        "deviation-isometric.png", "deviation-histogram.png", "deviation.stage.json",
     }  # fmt: skip
 
 
@@ -197,3 +197,22 @@ def test_a_single_profile_has_no_dent_to_find(scanned, tmp_path):
     assert run(["mesh", str(tmp_path / "single"), "--colour", "none"]) == 0
     with pytest.raises(EstimationError):
         search_dents(project, smallest=0.02, largest=0.15)
+
+
+def test_measurements_have_checksums_and_what_belonged_to_one_before_goes(scanned, capsys):
+    at = middle(scanned)
+    folder = scanned / "measure"
+    cut = ("--point-m", at, "--normal", "0,1,0", "--name", "keel")
+    assert measure(scanned, "section", *cut, "--formats", "dxf,csv") == 0
+    (folder / "keel-notes.txt").write_text("mine")
+    assert measure(scanned, "section", *cut, "--formats", "svg") == 0
+    made = {file.name for file in folder.glob("keel*")}
+    assert made == {"keel.json", "keel.svg", "keel.stage.json", "keel-notes.txt"}
+    assert run(["check", str(scanned)]) == 0
+    with (folder / "keel.svg").open("a") as file:
+        file.write(" ")
+    capsys.readouterr()
+    assert run(["check", str(scanned)]) == 2
+    assert "changed: measure/keel.svg" in capsys.readouterr().out
+    assert measure(scanned, "section", *cut, "--formats", "svg") == 0
+    assert run(["check", str(scanned)]) == 0

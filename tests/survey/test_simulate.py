@@ -10,7 +10,9 @@ from murkscan.io.mesh_files import load_mesh
 from murkscan.io.parquet import load_true_stripe
 from murkscan.io.poses import load_poses
 from murkscan.io.rig_toml import load_rig
+from murkscan.project import Project
 from murkscan.simulate import parse_scene, read_scene, simulate_frames
+from murkscan.survey.check import check_project
 from murkscan.survey.simulate import simulate_recording
 
 COLUMNS = [
@@ -173,14 +175,20 @@ def test_a_folder_that_no_simulation_has_made_stays_as_it_is(tmp_path, name):
 
 
 def test_a_simulation_that_was_stopped_is_made_anew_in_its_folder(tmp_path):
-    """Also where the demo has begun it with a note of its own."""
     scene, _ = _scene([("frames = 6", "frames = 2")])
-    (tmp_path / "stage.json").write_text("{}")
 
-    def stop(*_):
-        raise KeyboardInterrupt
+    def stop(word, done, total):
+        if done:
+            raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
         simulate_recording(scene, tmp_path, progress=stop)
     assert (tmp_path / "rig.toml").exists()
+    assert [one.state for one in check_project(Project(tmp_path))] == ["not finished"]
     assert simulate_recording(scene, tmp_path).num_pictures == 2
+    (checked,) = check_project(Project(tmp_path))
+    # Two pictures and their times, the rig, the poses, and of the truth stripes and a mesh.
+    assert (checked.num_whole, checked.foreign, checked.state) == (7, (), "")
+    made = (tmp_path / "rig.toml").stat().st_mtime_ns
+    simulate_recording(scene, tmp_path)
+    assert (tmp_path / "rig.toml").stat().st_mtime_ns == made

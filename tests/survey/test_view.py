@@ -9,10 +9,10 @@ import pytest
 
 from murkscan.errors import Degenerate, FormatError, InputError, MissingResult
 from murkscan.io.deviation_files import save_deviation_ply
-from murkscan.io.json_files import save_json
 from murkscan.mesh import GridMesh
-from murkscan.project import CLOUD, MESH, CloudResult, MeshResult, Project
+from murkscan.project import CLOUD, MEASURE, MESH, CloudResult, MeasureResult, MeshResult, Project
 from murkscan.survey.compared import compare_models
+from murkscan.survey.measured import measurement_files
 from murkscan.survey.shown import DEVIATION
 from murkscan.survey.view import draw_views
 from murkscan.types.deviation import Deviation
@@ -61,13 +61,17 @@ def content_of(page):
     return json.loads(re.search(r'id="content">(.*?)</script>', page, re.S)[1])
 
 
-def measure_deviation(project, cloud, *, name="deviation"):
+def measure_deviation(project, cloud, *, name="deviation", of=None):
+    """Of the present cloud, or of another one."""
     values = np.where(cloud.points[:, 1] > 0, 1e-3, np.nan)
     deviation = Deviation(values, np.zeros_like(cloud.points), np.zeros(len(cloud)))
-    folder = project.root / "measure"
-    save_deviation_ply(folder / f"{name}.ply", cloud.points, deviation, np.zeros(len(cloud)))
-    digest = project.finished(CLOUD).digest
-    save_json(folder / f"{name}.json", {"inputs": {"cloud": digest}})
+
+    def save():
+        with measurement_files(project, name).making(f"{name}.ply") as path:
+            save_deviation_ply(path, cloud.points, deviation, np.zeros(len(cloud)))
+
+    inputs = {"cloud": of or project.finished(CLOUD).digest}
+    finish(project, MEASURE, MeasureResult("deviation"), inputs=inputs, make=save, label=name)
 
 
 def test_a_merged_cloud_gets_pictures_and_a_page(tmp_path):
@@ -103,8 +107,7 @@ def test_a_measured_deviation_becomes_a_layer_and_a_new_one_replaces_it(tmp_path
 
 def test_a_deviation_of_another_cloud_is_not_shown(tmp_path):
     project, cloud = merged(tmp_path / "both")
-    measure_deviation(project, cloud)
-    save_json(project.root / "measure/deviation.json", {"inputs": {"cloud": "older"}})
+    measure_deviation(project, cloud, of="older")
     draw_views(project)
     assert "deviation" not in [layer["name"] for layer in shown(project)["models"][0]["layers"]]
 

@@ -8,6 +8,7 @@ from cyclopts import Parameter
 
 from ..errors import InputError
 from .progress import progress_bars
+from .typed import WORDS
 from .words import say, tell
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ def simulate(
     made_of = parse_scene(text, name, folder)
     text = as_standalone(text, made_of.rig, folder)
     with progress_bars() as progress:
-        made = simulate_recording(made_of, out, text=text, progress=progress)
+        made = simulate_recording(made_of, out, text=text, command=WORDS.get(), progress=progress)
     fields = f", {made.num_frames} fields" if made.num_pictures < made.num_frames else ""
     tell("recording", f"{made.num_pictures} pictures{fields}: {made.recording}")
     tell("rig", str(out / "rig.toml"))

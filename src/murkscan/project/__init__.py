@@ -2,21 +2,24 @@
 
 from .describe import describe as describe
 from .describe import digest as digest
+from .files import StageFiles as StageFiles
 from .folder import Project as Project
 from .kinds import CLOUD as CLOUD
 from .kinds import EXTRACT as EXTRACT
+from .kinds import MEASURE as MEASURE
 from .kinds import MESH as MESH
 from .kinds import MOTION as MOTION
 from .kinds import REPORT as REPORT
+from .kinds import SIMULATE as SIMULATE
 from .kinds import STAGES as STAGES
 from .kinds import TRIANGULATE as TRIANGULATE
 from .kinds import VIEW as VIEW
 from .kinds import Kind as Kind
-from .ledger import enter_all as enter_all
 from .lock import hold as hold
 from .results import AlignmentResult as AlignmentResult
 from .results import CloudResult as CloudResult
 from .results import ExtractResult as ExtractResult
+from .results import MeasureResult as MeasureResult
 from .results import MeshResult as MeshResult
 from .results import MotionResult as MotionResult
 from .results import OpenDirectionResult as OpenDirectionResult
@@ -26,6 +29,7 @@ from .results import PassResult as PassResult
 from .results import RecordingRecord as RecordingRecord
 from .results import ReportResult as ReportResult
 from .results import ScanRecord as ScanRecord
+from .results import SimulateResult as SimulateResult
 from .results import TriangulateResult as TriangulateResult
 from .results import ViewResult as ViewResult
 from .scanned import as_it_moves as as_it_moves
@@ -37,5 +41,7 @@ from .scanned import load_recording as load_recording
 from .scanned import load_scan_rig as load_scan_rig
 from .stage import Finished as Finished
 from .stage import Key as Key
+from .stage import Record as Record
 from .stage import Stage as Stage
 from .stage import read_record as read_record
+from .stage import record_of as record_of

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from ..errors import FormatError, MissingResult
 from ..io.checksum import Mark, mark_file
-from .ledger import Marks, entering, is_whole, read_ledger, strike
-from .stage import read_record
+from .ledger import Marks, entering, is_whole, ledger_of, read_ledger, strike
+from .stage import read_record, record_of
 
 
 @dataclass(frozen=True)
@@ -16,14 +16,16 @@ class StageFiles:
     """What a stage has made in its folder, whether it is finished or not."""
 
     folder: Path
+    label: str = ""
+    """What tells the stage from others in its folder."""
 
     def making(self, name: str) -> AbstractContextManager[Path]:
         """Enter a file into the ledger of a stage that has begun; gives the path to make it at."""
-        return entering(self.folder, name)
+        return entering(ledger_of(self.folder, self.label), name)
 
     def remove(self, name: str) -> None:
         """Remove a file that is not to stay."""
-        strike(self.folder, name)
+        strike(ledger_of(self.folder, self.label), name)
 
     def made(self, below: str = "") -> Mapping[str, Mark]:
         """Give the files in a subfolder by name: of a finished stage all, so that one is missed.
@@ -48,17 +50,21 @@ class StageFiles:
         """
         mark, path = self._marks()[0].get(name), self.folder / name
         if mark is None or not path.is_file():
-            raise MissingResult(f"{path} is missing; run `murkscan scan` again, which makes it.")
+            raise MissingResult(f"{path} is missing; run `{self._maker}` again, which makes it.")
         if mark_file(path) != mark:
             raise FormatError(
                 f"{path} is not as it was written: its checksum is another. Delete it and run "
-                "`murkscan scan` again, which makes it anew."
+                f"`{self._maker}` again, which makes it anew."
             )
         return path
 
+    @property
+    def _maker(self) -> str:
+        return "murkscan measure" if self.label else "murkscan scan"
+
     def _marks(self) -> tuple[Marks, bool]:
         """Give the marks of what has been made, and whether the stage is finished."""
-        record = read_record(self.folder)
+        record = read_record(record_of(self.folder, self.label))
         if record is not None and record.result is not None:
             return record.files, True
-        return read_ledger(self.folder), False
+        return read_ledger(ledger_of(self.folder, self.label)), False

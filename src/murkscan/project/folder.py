@@ -38,7 +38,7 @@ from .files import StageFiles
 from .kinds import CLOUD, EXTRACT, MESH, MOTION, REPORT, STAGES, TRIANGULATE, VIEW, Kind
 from .lock import hold
 from .results import PartNote, ScanRecord
-from .stage import Finished, Key, Stage, read_record
+from .stage import Finished, Key, Stage, read_record, record_of
 
 R = TypeVar("R")
 
@@ -92,14 +92,19 @@ class Project:
             raise InputError(f"{self.root} holds other files; give a new folder with --out.")
 
     def stage(
-        self, kind: Kind[R], *, settings: Mapping[str, Any], inputs: Mapping[str, Any]
+        self,
+        kind: Kind[R],
+        *,
+        settings: Mapping[str, Any],
+        inputs: Mapping[str, Any],
+        label: str = "",
     ) -> Stage[R]:
         """Give a stage's folder, to be made with these settings and inputs."""
         key = Key(kind.meaning, settings, inputs)
-        return Stage(self.root / kind.word, kind, key, tuple(self.command))
+        return Stage(self.root / kind.word, kind, key, tuple(self.command), label)
 
-    def finished(self, kind: Kind[R]) -> Finished[R]:
-        """Give a stage as it was finished last.
+    def finished(self, kind: Kind[R], label: str = "") -> Finished[R]:
+        """Give a stage as it was finished last; of those that share a folder the one of a label.
 
         Raises:
             MissingResult: It has not been run, not to its end, or a stage before it has been run
@@ -107,7 +112,8 @@ class Project:
             FormatError: What it said is damaged.
         """
         folder, word = self.root / kind.word, kind.word
-        record = read_record(folder)
+        file = record_of(folder, label)
+        record = read_record(file)
         if record is None or record.result is None:
             raise MissingResult(
                 f"{self.root} has no finished {word} stage; run `murkscan {word}` or "
@@ -120,7 +126,7 @@ class Project:
                     f"The {word} stage of {self.root} is older than its {source.word} stage; run "
                     f"`murkscan {word}` or `murkscan scan` again."
                 )
-        result = from_plain(kind.result, record.result, name=str(folder / "stage.json"))
+        result = from_plain(kind.result, record.result, name=str(file))
         return Finished(folder, result, record)
 
     def load_stripe_parts(self) -> Iterator[tuple[int, PartNote]]:

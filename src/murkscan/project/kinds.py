@@ -6,9 +6,11 @@ from typing import Any, Generic, TypeVar
 from .results import (
     CloudResult,
     ExtractResult,
+    MeasureResult,
     MeshResult,
     MotionResult,
     ReportResult,
+    SimulateResult,
     TriangulateResult,
     ViewResult,
 )
@@ -36,6 +38,11 @@ CLOUD = Kind("cloud", CloudResult, meaning=2)
 MESH = Kind("mesh", MeshResult, meaning=1)
 VIEW = Kind("view", ViewResult, meaning=2)
 REPORT = Kind("report", ReportResult, meaning=2)
+
+MEASURE = Kind("measure", MeasureResult, meaning=1)
+"""Not in order: each measurement is one of its own, told from others in the folder by its name."""
+SIMULATE = Kind("simulate", SimulateResult, meaning=1)
+"""In a folder of its own, that of the recording."""
 
 STAGES: tuple[Kind[Any], ...] = (EXTRACT, TRIANGULATE, MOTION, CLOUD, MESH, VIEW, REPORT)
 """The stages of a scan, in order."""

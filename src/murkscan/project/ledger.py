@@ -13,49 +13,43 @@ from pathlib import Path
 from ..io.atomic import aside_of, replacing
 from ..io.checksum import Mark, mark_file
 
-_NAME = ".ledger.jsonl"
-
 Marks = Mapping[str, Mark | None]
 """Files by name, relative to the stage's folder; None for one that was begun and not finished."""
 
 
+def ledger_of(folder: Path, label: str = "") -> Path:
+    """Name the ledger of a stage; in a folder that several share, each has its label."""
+    return folder / f".{label + '.' if label else ''}ledger.jsonl"
+
+
 @contextmanager
-def entering(folder: Path, name: str) -> Iterator[Path]:
+def entering(ledger: Path, name: str) -> Iterator[Path]:
     """Enter a file into the ledger before and after it is made.
 
     Args:
-        folder: The stage's folder.
-        name: The file, relative to it.
+        ledger: The ledger of its stage.
+        name: The file, relative to the ledger's folder.
 
     Yields:
         Its path, at which it must be when the context ends.
     """
-    _append(folder, {"file": name})
-    yield folder / name
-    mark = mark_file(folder / name)
-    _append(folder, {"file": name, "size": mark.size, "blake2b": mark.blake2b})
+    _append(ledger, {"file": name})
+    yield ledger.parent / name
+    mark = mark_file(ledger.parent / name)
+    _append(ledger, {"file": name, "size": mark.size, "blake2b": mark.blake2b})
 
 
-def enter_all(folder: Path) -> None:
-    """Enter all that lies in a folder: for a job in a folder of its own that keeps no ledger."""
-    files = (file for file in sorted(folder.rglob("*")) if file.is_file())
-    names = (file.relative_to(folder).as_posix() for file in files)
-    made = [name for name in names if name != "stage.json" and not Path(name).name.startswith(".")]
-    write_ledger(folder, {name: mark_file(folder / name) for name in made})
-
-
-def strike(folder: Path, name: str) -> None:
+def strike(ledger: Path, name: str) -> None:
     """Remove a file that is not to stay, and take it out of the ledger."""
-    (folder / name).unlink(missing_ok=True)
-    _append(folder, {"file": name, "removed": True})
+    (ledger.parent / name).unlink(missing_ok=True)
+    _append(ledger, {"file": name, "removed": True})
 
 
-def read_ledger(folder: Path) -> Marks:
+def read_ledger(ledger: Path) -> Marks:
     """Read the files that a stage has made so far; a line that a crash has torn says nothing."""
-    path = folder / _NAME
     try:
-        about = path.stat()
-        return _parse(path, about.st_ino, about.st_size, about.st_mtime_ns)
+        about = ledger.stat()
+        return _parse(ledger, about.st_ino, about.st_size, about.st_mtime_ns)
     except OSError:
         return {}
 
@@ -74,19 +68,19 @@ def _parse(path: Path, inode: int, size: int, modified: int) -> Marks:
     return marks
 
 
-def write_ledger(folder: Path, marks: Marks) -> None:
+def write_ledger(ledger: Path, marks: Marks) -> None:
     """Begin a ledger with files that are there already."""
     entries = [
         {"file": name} | ({} if mark is None else {"size": mark.size, "blake2b": mark.blake2b})
         for name, mark in marks.items()
     ]
-    with replacing(folder / _NAME) as aside:
+    with replacing(ledger) as aside:
         aside.write_text("".join(json.dumps(entry) + "\n" for entry in entries), "utf-8")
 
 
-def close_ledger(folder: Path) -> None:
+def close_ledger(ledger: Path) -> None:
     """Remove the ledger, when what it says stands elsewhere."""
-    for file in (folder / _NAME, aside_of(folder / _NAME)):
+    for file in (ledger, aside_of(ledger)):
         file.unlink(missing_ok=True)
 
 
@@ -117,7 +111,7 @@ def _is_inside(name: str) -> bool:
     return not path.is_absolute() and ".." not in path.parts
 
 
-def _append(folder: Path, entry: Mapping[str, object]) -> None:
+def _append(ledger: Path, entry: Mapping[str, object]) -> None:
     # A line of its own even after one that a crash has torn; one write, so that threads do not mix.
-    with (folder / _NAME).open("ab", buffering=0) as file:
+    with ledger.open("ab", buffering=0) as file:
         file.write(f"\n{json.dumps(entry)}\n".encode())

@@ -212,6 +212,28 @@ class ReportResult:
 
 
 @dataclass(frozen=True)
+class MeasureResult:
+    """What was measured; the numbers stand in a file of their own."""
+
+    kind: str
+    """Such as sphere, distance, section."""
+
+
+@dataclass(frozen=True)
+class SimulateResult:
+    """What was simulated."""
+
+    recording: str
+    """The folder of pictures or the video, relative to the folder of the simulation."""
+    pictures: int
+    """Pictures kept."""
+    frames: int
+    """Frames, fields counted."""
+    centres: int
+    """True centres of the stripe."""
+
+
+@dataclass(frozen=True)
 class PartNote:
     """The frames that one part of extract covers."""
 

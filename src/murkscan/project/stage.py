@@ -14,10 +14,9 @@ from ..io.json_files import load_json
 from ..io.values import as_plain, from_plain, save_value
 from .describe import digest
 from .kinds import Kind
-from .ledger import close_ledger, is_whole, read_ledger, remove_files, write_ledger
+from .ledger import close_ledger, is_whole, ledger_of, read_ledger, remove_files, write_ledger
 
 R = TypeVar("R")
-_FILE = "stage.json"
 
 
 @dataclass(frozen=True)
@@ -51,11 +50,16 @@ class Record:
     """All that it has made, relative to its folder."""
 
 
-def read_record(folder: Path) -> Record | None:
-    """Read stage.json; None where there is none, and one that is damaged counts as none."""
+def record_of(folder: Path, label: str = "") -> Path:
+    """Name the record of a stage; in a folder that several share, each has its label."""
+    return folder / (f"{label}.stage.json" if label else "stage.json")
+
+
+def read_record(file: Path) -> Record | None:
+    """Read a stage.json; None where there is none, and one that is damaged counts as none."""
     try:
-        about = (folder / _FILE).stat()
-        return _parse(folder / _FILE, about.st_ino, about.st_size, about.st_mtime_ns)
+        about = file.stat()
+        return _parse(file, about.st_ino, about.st_size, about.st_mtime_ns)
     except (OSError, FormatError):
         return None
 
@@ -74,6 +78,8 @@ class Stage(Generic[R]):
     key: Key
     command: tuple[str, ...] = ()
     """The words that were typed after `murkscan`, for the record."""
+    label: str = ""
+    """What tells it from others in its folder, such as a measurement's name."""
 
     @property
     def digest(self) -> str:
@@ -85,14 +91,14 @@ class Stage(Generic[R]):
 
         None before that, and where a file that it made is missing or cut off since.
         """
-        record = read_record(self.folder)
+        record = read_record(self._record)
         if record is None or record.result is None or record.key.digest != self.digest:
             return None
         # What others put beside it, such as a file browser's notes, is no reason to begin again.
         if not all(is_whole(self.folder / name, mark) for name, mark in record.files.items()):
             return None
         with suppress(FormatError):
-            return from_plain(self.kind.result, record.result, name=str(self.folder / _FILE))
+            return from_plain(self.kind.result, record.result, name=str(self._record))
         return None
 
     def begin(self) -> None:
@@ -100,32 +106,40 @@ class Stage(Generic[R]):
 
         A kill at any moment leaves a folder with which this can be done again.
         """
-        record, ledger = read_record(self.folder), read_ledger(self.folder)
+        record, ledger = read_record(self._record), read_ledger(self._ledger)
         marks = {**(record.files if record else {}), **ledger}
         if record is not None and record.key.digest == self.digest:
             begun = {name: mark for name, mark in marks.items() if not self._is_sound(name, mark)}
             remove_files(self.folder, begun)
-            write_ledger(self.folder, {n: mark for n, mark in marks.items() if n not in begun})
+            write_ledger(self._ledger, {n: mark for n, mark in marks.items() if n not in begun})
         else:
             remove_files(self.folder, marks)
-            close_ledger(self.folder)
-        save_value(self.folder / _FILE, Record(self.key))
+            close_ledger(self._ledger)
+        save_value(self._record, Record(self.key))
 
     def finish(self, result: R, *, since: float) -> None:
         """Say that the stage is done, and with what; it began `since` [s, monotonic clock]."""
         files = {
             name: mark
-            for name, mark in sorted(read_ledger(self.folder).items())
+            for name, mark in sorted(read_ledger(self._ledger).items())
             if mark is not None and is_whole(self.folder / name, mark)
         }
         seconds = round(time.monotonic() - since, 3)
         record = Record(self.key, seconds, self.command, as_plain(result), files)
-        save_value(self.folder / _FILE, record)
-        close_ledger(self.folder)
+        save_value(self._record, record)
+        close_ledger(self._ledger)
 
     def settle(self) -> None:
         """Remove what a kill has left of a stage that is finished: its ledger."""
-        close_ledger(self.folder)
+        close_ledger(self._ledger)
+
+    @property
+    def _record(self) -> Path:
+        return record_of(self.folder, self.label)
+
+    @property
+    def _ledger(self) -> Path:
+        return ledger_of(self.folder, self.label)
 
     def _is_sound(self, name: str, mark: Mark | None) -> bool:
         return mark is not None and is_whole(self.folder / name, mark)

@@ -1,6 +1,5 @@
 """The demo: simulate a recording, scan it as the paper does and as we do, and ask the truth."""
 
-import time
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,7 +13,7 @@ from ..io.rig_toml import load_rig
 from ..io.text import save_text
 from ..motion import ConstantSpeed
 from ..page import Gallery, Note, Picture, Section, Table, render_page
-from ..project import Key, Kind, Project, Stage, enter_all, hold
+from ..project import Project
 from ..simulate import as_standalone, parse_scene, read_scene
 from ..types.arrays import Scalars
 from .progress import Progress, silent
@@ -31,18 +30,9 @@ _NEXT = (
     "measured: an edge hid the surface from the laser or from the camera, or no light came back. "
     "How the scan by murk went, and how far to trust it, stands in scan/report/index.html."
 )
-_MEANING = 1
-"""Of the recording that is simulated; another one is made when it changes."""
 _TURN = "the surface, coloured by its distance from the camera; click to turn and measure it"
 _COMPARED = 20_000
 """Points of the cloud that are held against the truth."""
-
-
-@dataclass(frozen=True)
-class _Simulated:
-    """What the simulation says when it is done."""
-
-    frames: int
 
 
 @dataclass(frozen=True)
@@ -94,27 +84,14 @@ def run_demo(out: Path, *, progress: Progress = silent) -> tuple[Compared, Compa
     Raises:
         DeviceError: The disk is full.
     """
-    _record(out / "recording", progress)
+    text, name, beside = read_scene(_SCENE)
+    scene = parse_scene(text, name, beside)
+    text = as_standalone(text, scene.rig, beside)
+    simulate_recording(scene, out / "recording", text=text, progress=progress)
     ours = _scan(out, "scan", Murk(), "murk: noise, chain and fit", progress)
     paper = _scan(out, "paper", ThresholdSkeleton(), "the paper: threshold and skeleton", progress)
     save_text(out / "index.html", _page(ours, paper))
     return ours, paper
-
-
-def _record(folder: Path, progress: Progress) -> None:
-    """Simulate the recording, unless it is there."""
-    text, name, beside = read_scene(_SCENE)
-    scene = parse_scene(text, name, beside)
-    text = as_standalone(text, scene.rig, beside)
-    key = Key(_MEANING, {"scene": text})
-    stage = Stage(folder, Kind("simulate", _Simulated, _MEANING), key)
-    with hold(folder.parent):
-        if stage.result() is None:
-            since = time.monotonic()
-            stage.begin()
-            simulate_recording(scene, stage.folder, text=text, progress=progress)
-            enter_all(folder)
-            stage.finish(_Simulated(len(scene)), since=since)
 
 
 def _scan(

@@ -19,16 +19,17 @@ from ..measure import (
     require_dent_sizes,
     sigma_of_points,
 )
-from ..project import Project, find_trajectory
+from ..project import Project, StageFiles, find_trajectory
 from ..types.dent import Dent
 from ..types.deviation import Deviation
 from ..types.measurement import Measurement
 from ..types.mesh import Mesh
 from ..types.quantity import Quantity
+from ..types.trajectory import Trajectory
 from ..view.render import render
 from ..view.values import SignedValues
 from ..view.views import standard_views
-from .measured import as_plain, measure_file, save_measurement
+from .measured import as_plain, keep_measurement, measuring
 from .reference import Reference
 from .sample import load_sample
 
@@ -57,21 +58,24 @@ def compare_scan(
         NotEnoughData: No point lies near the reference.
         InputError: The name is none for a file, or the distance is none.
     """
-    measure_file(project, name)
-    sample = load_sample(project, selection)
-    surface = cut_out(project.load_mesh(), selection)
-    deviation = deviation_from_mesh(
-        sample, reference.mesh, within=within, sigma=reference.sigma_along
-    )
-    measured = measure_departure(sample, deviation)
-    details = dict(measured.details) | _how_aligned(reference) | {"within_m": within}
-    details["points_per_row"] = _save_points(project, name, sample, deviation)
-    _draw(project, name, surface, sample, deviation)
-    histogram = draw_histogram(deviation.values, title=f"Scan against reference: {name}")
-    write_image(measure_file(project, f"{name}-histogram", "png"), histogram)
-    measured = replace(measured, details=details)
-    save_measurement(project, name, measured)
-    return measured
+    with measuring(project, name):
+        sample = load_sample(project, selection)
+        surface = cut_out(project.load_mesh(), selection)
+        deviation = deviation_from_mesh(
+            sample, reference.mesh, within=within, sigma=reference.sigma_along
+        )
+        measured = measure_departure(sample, deviation)
+        details = {**measured.details, **_how_aligned(reference), "within_m": within}
+
+        def write(files: StageFiles) -> dict[str, object]:
+            rows = _save_points(files, sample, deviation)
+            _draw(files, find_trajectory(project), surface, sample, deviation)
+            title = f"Scan against reference: {name}"
+            with files.making(f"{name}-histogram.png") as path:
+                write_image(path, draw_histogram(deviation.values, title=title))
+            return {"points_per_row": rows}
+
+        return keep_measurement(project, name, replace(measured, details=details), write=write)
 
 
 def search_dents(
@@ -101,19 +105,28 @@ def search_dents(
         NotEnoughData: The part is too small.
         InputError: The name is none for a file, or a size is not one.
     """
-    measure_file(project, name)
     require_dent_sizes(smallest=smallest, largest=largest, least_depth=least_depth)
-    sample = load_sample(project, selection)
-    surface = cut_out(project.load_mesh(), selection)
-    if reference is None:
-        deviation = deviation_from_smooth(sample, largest=largest)
-    else:
-        deviation = deviation_from_mesh(
-            sample, reference.mesh, within=largest, sigma=reference.sigma_along
-        )
-    search = find_dents(sample, deviation, smallest=smallest, least_depth=least_depth)
-    _save_points(project, name, sample, deviation)
-    _draw(project, name, surface, sample, deviation)
+    with measuring(project, name):
+        sample = load_sample(project, selection)
+        surface = cut_out(project.load_mesh(), selection)
+        if reference is None:
+            deviation = deviation_from_smooth(sample, largest=largest)
+        else:
+            deviation = deviation_from_mesh(
+                sample, reference.mesh, within=largest, sigma=reference.sigma_along
+            )
+        search = find_dents(sample, deviation, smallest=smallest, least_depth=least_depth)
+
+        def write(files: StageFiles) -> dict[str, object]:
+            _save_points(files, sample, deviation)
+            _draw(files, find_trajectory(project), surface, sample, deviation)
+            return {}
+
+        keep_measurement(project, name, _as_measurement(search, reference), write=write)
+    return search
+
+
+def _as_measurement(search: DentSearch, reference: Reference | None) -> Measurement:
     details: dict[str, object] = {
         "dents": [_as_plain(dent) for dent in search.dents],
         "unsure": search.num_unsure,
@@ -121,24 +134,30 @@ def search_dents(
     if reference is not None:
         details |= _how_aligned(reference)
     threshold = Quantity("threshold", search.threshold, "m", search.noise, 0.0)
-    save_measurement(project, name, Measurement("dents", (threshold,), details))
-    return search
+    return Measurement("dents", (threshold,), details)
 
 
-def _save_points(project: Project, name: str, sample: Sample, deviation: Deviation) -> int:
+def _save_points(files: StageFiles, sample: Sample, deviation: Deviation) -> int:
     points, sigma = sample.cloud.points, sigma_of_points(sample, deviation)
-    save_deviation_ply(measure_file(project, name, "ply"), points, deviation, sigma)
-    table = measure_file(project, name, "csv")
-    return save_deviation_csv(table, points, deviation.values, sigma)
+    with files.making(f"{files.label}.ply") as path:
+        save_deviation_ply(path, points, deviation, sigma)
+    with files.making(f"{files.label}.csv") as path:
+        return save_deviation_csv(path, points, deviation.values, sigma)
 
 
-def _draw(project: Project, name: str, surface: Mesh, sample: Sample, deviation: Deviation) -> None:
+def _draw(
+    files: StageFiles,
+    trajectory: Trajectory | None,
+    surface: Mesh,
+    sample: Sample,
+    deviation: Deviation,
+) -> None:
     """Draw the scan's surface, coloured by its deviation."""
     colours = SignedValues(sample.cloud.points, deviation.values)
-    for view in standard_views(find_trajectory(project)):
+    for view in standard_views(trajectory):
         if view.name in _PICTURES:
-            picture = render(surface, view, colours=colours)
-            write_image(measure_file(project, f"{name}-{view.name}", "png"), picture)
+            with files.making(f"{files.label}-{view.name}.png") as path:
+                write_image(path, render(surface, view, colours=colours))
 
 
 def _how_aligned(reference: Reference) -> dict[str, object]:

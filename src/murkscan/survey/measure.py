@@ -17,10 +17,10 @@ from ..measure import (
     measure_volume,
     trust_plane,
 )
-from ..project import Project
+from ..project import Project, StageFiles
 from ..types.measurement import Measurement
 from ..types.plane import Plane
-from .measured import measure_file, save_measurement
+from .measured import keep_measurement, measuring
 from .sample import load_sample
 
 
@@ -44,11 +44,9 @@ def measure_points(
         EstimationError: The points do not determine it.
         InputError: The name is none for a file, or a point is not finite.
     """
-    if name is not None:
-        measure_file(project, name)
-    measured = measure(load_sample(project, selection))
-    save_measurement(project, name or measured.kind, measured)
-    return measured
+    with measuring(project, name):
+        measured = measure(load_sample(project, selection))
+        return keep_measurement(project, name or measured.kind, measured)
 
 
 def measure_cut(
@@ -70,18 +68,24 @@ def measure_cut(
         MissingResult: The mesh stage has not been finished.
         NotEnoughData: The plane does not meet the surface.
     """
-    files = {kind: measure_file(project, name, kind) for kind in formats}
-    section = cut_section(project.load_mesh(), plane)
-    measured, sigmas = measure_section(section, load_sample(project))
-    drawing = section.as_drawing()
-    if "csv" in files:
-        save_section_csv(files["csv"], drawing, section.lines, sigmas)
-    if "svg" in files:
-        save_section_svg(files["svg"], drawing, title=name)
-    if "dxf" in files:
-        save_section_dxf(files["dxf"], drawing)
-    save_measurement(project, name, measured)
-    return measured
+
+    def write(files: StageFiles) -> dict[str, object]:
+        if "csv" in formats:
+            with files.making(f"{name}.csv") as path:
+                save_section_csv(path, drawing, section.lines, sigmas)
+        if "svg" in formats:
+            with files.making(f"{name}.svg") as path:
+                save_section_svg(path, drawing, title=name)
+        if "dxf" in formats:
+            with files.making(f"{name}.dxf") as path:
+                save_section_dxf(path, drawing)
+        return {}
+
+    with measuring(project, name):
+        section = cut_section(project.load_mesh(), plane)
+        measured, sigmas = measure_section(section, load_sample(project))
+        drawing, chosen = section.as_drawing(), {"formats": sorted(formats)}
+        return keep_measurement(project, name, measured, write=write, settings=chosen)
 
 
 def measure_stairs(
@@ -94,10 +98,9 @@ def measure_stairs(
         EstimationError: A part is too small, or is no plane.
         InputError: The name is none for a file.
     """
-    measure_file(project, name)
-    measured = measure_step(load_sample(project, first), load_sample(project, second))
-    save_measurement(project, name, measured)
-    return measured
+    with measuring(project, name):
+        measured = measure_step(load_sample(project, first), load_sample(project, second))
+        return keep_measurement(project, name, measured)
 
 
 def measure_covered(
@@ -110,11 +113,9 @@ def measure_covered(
         NotEnoughData: The selection holds no triangle.
         InputError: The name is none for a file, or sheets of the surface lie on one another.
     """
-    measure_file(project, name)
-    mesh = cut_out(project.load_mesh(), selection)
-    measured = measure_area(mesh, load_sample(project))
-    save_measurement(project, name, measured)
-    return measured
+    with measuring(project, name):
+        mesh = cut_out(project.load_mesh(), selection)
+        return keep_measurement(project, name, measure_area(mesh, load_sample(project)))
 
 
 def measure_above(
@@ -138,16 +139,15 @@ def measure_above(
         EstimationError: A part is too small, or the base is no plane.
         InputError: The name is none for a file, or sheets of the surface lie on one another.
     """
-    measure_file(project, name)
-    sample = load_sample(project)
-    mesh = cut_out(project.load_mesh(), selection)
-    if isinstance(base, Plane):
-        measured = measure_volume(mesh, sample, base)
-    else:
-        fit, trust = trust_plane(load_sample(project, base))
-        measured = measure_volume(mesh, sample, fit.shape, trust=(trust, fit.middle))
-    save_measurement(project, name, measured)
-    return measured
+    with measuring(project, name):
+        sample = load_sample(project)
+        mesh = cut_out(project.load_mesh(), selection)
+        if isinstance(base, Plane):
+            measured = measure_volume(mesh, sample, base)
+        else:
+            fit, trust = trust_plane(load_sample(project, base))
+            measured = measure_volume(mesh, sample, fit.shape, trust=(trust, fit.middle))
+        return keep_measurement(project, name, measured)
 
 
 def measure_inside(project: Project, *, name: str = "volume") -> Measurement:
@@ -157,7 +157,6 @@ def measure_inside(project: Project, *, name: str = "volume") -> Measurement:
         MissingResult: The mesh stage has not been finished.
         InputError: The surface is not closed, or the name is none for a file.
     """
-    measure_file(project, name)
-    measured = measure_enclosed(project.load_mesh(), load_sample(project))
-    save_measurement(project, name, measured)
-    return measured
+    with measuring(project, name):
+        measured = measure_enclosed(project.load_mesh(), load_sample(project))
+        return keep_measurement(project, name, measured)

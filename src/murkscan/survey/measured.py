@@ -1,51 +1,105 @@
-"""What a measurement leaves in OUT/measure."""
+"""What a measurement leaves in OUT/measure: a stage of its own, told from others by its name."""
 
 import re
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import replace
 from importlib.metadata import version
-from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
 from ..io.json_files import save_json
-from ..project import CLOUD, Project
+from ..project import CLOUD, MEASURE, MeasureResult, Project, StageFiles
 from ..types.measurement import Measurement
 from ..types.quantity import Quantity
+from .progress import silent
+from .stage_runner import make_stage
 
 _NAME = re.compile(r"[\w][\w.-]*", re.ASCII)
+_TAKEN = ("stage", ".stage")
+"""What a name is not, or does not end in: the names of records do."""
+
+Write = Callable[[StageFiles], Mapping[str, object]]
+"""Writes the files beside the numbers, and gives what more is to be said of them."""
 
 
-def measure_file(project: Project, name: str, suffix: str = "json") -> Path:
-    """Give the file of a measurement: OUT/measure/<name>.<suffix>.
+def measurement_files(project: Project, name: str) -> StageFiles:
+    """Give the files of a measurement, OUT/measure/<name>….
 
     Raises:
         InputError: The name is none for a file.
     """
-    if not _NAME.fullmatch(name) or name == "stage":
+    if not _NAME.fullmatch(name) or name == _TAKEN[0] or name.endswith(_TAKEN[1]):
         raise InputError(
             f"{name!r} is no name for a measurement; take letters, digits, - and _, such as bow."
         )
-    return project.root / "measure" / f"{name}.{suffix}"
+    return StageFiles(project.root / MEASURE.word, name)
 
 
-def save_measurement(project: Project, name: str, measured: Measurement) -> Path:
-    """Write a measurement, and what it was taken from.
+@contextmanager
+def measuring(project: Project, name: str | None) -> Iterator[None]:
+    """Hold a scan's folder while it is measured.
+
+    Raises:
+        InputError: The name is none for a file, or another run is at work in the folder.
+        MissingResult: The cloud stage has not been finished.
+    """
+    if name is not None:
+        measurement_files(project, name)
+    project.finished(CLOUD)
+    with project.hold():
+        yield
+
+
+def keep_measurement(
+    project: Project,
+    name: str,
+    measured: Measurement,
+    *,
+    write: Write = lambda files: {},
+    settings: Mapping[str, Any] | None = None,
+) -> Measurement:
+    """Write a measurement, what it was taken from, and the files that belong to it.
+
+    Args:
+        project: What was measured.
+        name: What to call it.
+        measured: The numbers.
+        write: Writes what else belongs to it.
+        settings: Of these files; another measurement of the name takes the place of all.
+
+    Returns:
+        The measurement with all details.
 
     Raises:
         InputError: The name is none for a file, or a number is not finite.
         DeviceError: The disk is full or cannot be written.
     """
-    path = measure_file(project, name)
-    quantities = {_key(quantity): as_plain(quantity) for quantity in measured.quantities}
-    content = {
-        "format": 1,
-        "kind": measured.kind,
-        "murkscan": version("murkscan"),
-        "inputs": {"cloud": project.finished(CLOUD).digest},
-        "quantities": quantities,
-        "details": dict(measured.details),
-    }
-    save_json(path, content)
-    return path
+    files, cloud = measurement_files(project, name), project.finished(CLOUD).digest
+    stage = project.stage(
+        MEASURE,
+        settings={"kind": measured.kind, **(settings or {})},
+        inputs={"cloud": cloud},
+        label=name,
+    )
+    details = dict(measured.details)
+
+    def make(_: None) -> MeasureResult:
+        details.update(write(files))
+        content = {
+            "format": 1,
+            "kind": measured.kind,
+            "murkscan": version("murkscan"),
+            "inputs": {"cloud": cloud},
+            "quantities": {_key(one): as_plain(one) for one in measured.quantities},
+            "details": details,
+        }
+        with files.making(f"{name}.json") as path:
+            save_json(path, content)
+        return MeasureResult(measured.kind)
+
+    make_stage(project, stage, make, prepare=lambda: None, progress=silent)
+    return replace(measured, details=details)
 
 
 def as_plain(quantity: Quantity) -> dict[str, Any]:

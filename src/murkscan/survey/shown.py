@@ -1,17 +1,16 @@
 """What the page shows of a scan, from what its stages have left."""
 
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 
-from ..errors import InputError
-from ..io.checksum import mark_file
+from ..errors import InputError, MissingResult
 from ..io.deviation_files import load_deviation_ply
-from ..io.json_files import load_json
-from ..project import CLOUD, MESH, Project, find_frame_times, find_trajectory
+from ..project import CLOUD, MEASURE, MESH, Project, digest, find_frame_times, find_trajectory
 from ..types.cloud import PointCloud
 from ..view import Layer, Model, choose_fairly, model_of_scan
-from .measured import measure_file
+from .measured import measurement_files
 from .origin import name_recording
 from .shift_field import trace_shift_field
 
@@ -48,7 +47,9 @@ def load_model(project: Project, *, most: int, deviation: str = DEVIATION) -> Mo
     )
     if deviation_digest(project, deviation) is None:
         return model
-    points, values = load_deviation_ply(measure_file(project, deviation, "ply"))
+    points, values = load_deviation_ply(
+        measurement_files(project, deviation).checked(f"{deviation}.ply")
+    )
     if len(points) == 0:
         return model
     layer = Layer("deviation", values * 1e3, "mm", "RdBu_r", is_signed=True)
@@ -81,17 +82,14 @@ def deviation_digest(project: Project, name: str) -> str | None:
     Raises:
         InputError: One is asked for that has not been measured.
     """
-    file = measure_file(project, name)
-    is_there = file.exists() and measure_file(project, name, "ply").exists()
-    if (
-        is_there
-        and load_json(file).get("inputs", {}).get("cloud") == project.finished(CLOUD).digest
-    ):
-        return mark_file(file).blake2b
+    with suppress(MissingResult):
+        finished = project.finished(MEASURE, name)
+        if f"{name}.ply" in finished.record.files:
+            return digest([mark.blake2b for mark in finished.record.files.values()])
     if name != DEVIATION:
         raise InputError(
-            f"{file} is no deviation of the present cloud; run `murkscan measure {project.root} "
-            f"deviation … --name {name}` first."
+            f"{project.root} has no deviation {name} of its present cloud; run `murkscan measure "
+            f"{project.root} deviation … --name {name}` first."
         )
     return None
 

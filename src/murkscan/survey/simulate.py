@@ -1,7 +1,7 @@
 """Write a simulated recording, its rig, its poses and its truth."""
 
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -10,17 +10,30 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import InputError
-from ..io.atomic import replacing
 from ..io.images import write_image
 from ..io.mesh_files import save_mesh
 from ..io.parquet import writing_true_stripes
 from ..io.poses import save_poses
 from ..io.rig_toml import save_rig
+from ..io.text import save_text
 from ..io.times_csv import write_times
 from ..io.video import writing_video
+from ..project import (
+    SIMULATE,
+    Key,
+    Project,
+    SimulateResult,
+    Stage,
+    StageFiles,
+    describe,
+    digest,
+    read_record,
+    record_of,
+)
 from ..simulate import Scene, SimulatedFrame, Simulator, as_colour, log_navigation
 from ..types.trajectory import Trajectory
 from .progress import Progress, silent
+from .stage_runner import run_stage
 
 _WORKERS = 2
 """Frames that are drawn at once: drawing waits for its own Python half of the time."""
@@ -30,10 +43,6 @@ _FASTEST = 500.0
 """Pictures a second that a video's times can tell apart."""
 _PART = 64
 """Frames whose truth is written at once."""
-_MARK = "truth/README.txt"
-"""The file that only simulations have, and have from the beginning."""
-_NO_WORK = ("stage.json",)
-"""What may lie in a new folder: the demo's note of what it simulates."""
 
 Keep = Callable[[np.ndarray, float], None]
 """Keeps one picture and its time [s]."""
@@ -54,32 +63,55 @@ class SimulatedRecording:
 
 
 def simulate_recording(
-    scene: Scene, out: Path, *, text: str | None = None, progress: Progress = silent
+    scene: Scene,
+    out: Path,
+    *,
+    text: str | None = None,
+    command: Sequence[str] = (),
+    progress: Progress = silent,
 ) -> SimulatedRecording:
     """Write frames/ or recording.mkv, rig.toml, poses.csv, and truth/.
 
     poses.csv holds the true poses at the frames' own times, of the vehicle where the rig has a
     mount; navigation.csv what the vehicle's log says, where the scene has one.
 
+    A simulation that is done with the same scene is skipped; one that was stopped is made anew.
+
     Args:
         scene: What is recorded, by which rig, along which way.
-        out: The folder: a new one, or that of an earlier simulation, finished or not, whose files
-            are replaced.
+        out: The folder: a new one, or that of an earlier simulation, finished or not.
         text: The scene file's text, to be kept with the truth.
+        command: The words that were typed after `murkscan`, for the record.
         progress: Told of each frame.
 
     Raises:
-        InputError: The sheet never meets the object, or the folder holds other files.
+        InputError: The sheet never meets the object, the folder holds other files, or another run
+            is at work in it.
         DeviceError: The disk is full.
     """
     _require_ours(out)
-    simulator = Simulator.of(scene)
-    _clear(out)
-    _write_rig_and_way(scene, out)
-    centres = 0
+    settings = {"scene": digest(describe(scene)), "text": digest(text)}
+    stage = Stage(out, SIMULATE, Key(SIMULATE.meaning, settings), tuple(command))
+    # What is refused is refused before anything is written.
+    simulator = None if stage.result() is not None else Simulator.of(scene)
+
+    def make(_: None) -> SimulateResult:
+        return _write(simulator or Simulator.of(scene), StageFiles(out), text, progress)
+
+    project = Project(out, stage.command)
+    made = run_stage(project, stage, make, prepare=lambda: None, progress=progress)
+    return SimulatedRecording(out / made.recording, made.pictures, made.frames, made.centres)
+
+
+def _write(
+    simulator: Simulator, files: StageFiles, text: str | None, progress: Progress
+) -> SimulateResult:
+    scene, centres = simulator.scene, 0
+    _write_rig_and_trajectory(scene, files)
     with (
-        _keeping(scene, out) as (recording, keep),
-        writing_true_stripes(out / "truth" / "stripes.parquet") as tell,
+        _keeping(scene, files) as (recording, keep),
+        files.making("truth/stripes.parquet") as path,
+        writing_true_stripes(path) as tell,
     ):
         stripes, fields, kept = [], [], None
         for frame in _draw_ahead(simulator):
@@ -96,38 +128,22 @@ def simulate_recording(
                 stripes.clear()
             progress("simulate", frame.frame.index + 1, len(scene))
     if scene.bodies:
-        save_mesh(out / "truth" / "mesh.ply", scene.surroundings.mesh)
+        with files.making("truth/mesh.ply") as path:
+            save_mesh(path, scene.surroundings.mesh)
     if text is not None:
-        with replacing(out / "truth" / "scene.toml") as aside:
-            aside.write_text(text, "utf-8")
-    return SimulatedRecording(recording, len(scene) // scene.row_step, len(scene), centres)
+        with files.making("truth/scene.toml") as path:
+            save_text(path, text)
+    return SimulateResult(recording, len(scene) // scene.row_step, len(scene), centres)
 
 
 def _require_ours(out: Path) -> None:
     """Refuse a folder whose rig, poses or pictures are somebody's own."""
-    others = [file for file in sorted(out.glob("*")) if file.name not in _NO_WORK]
-    others = [file for file in others if not file.name.startswith(".")]
-    if out.is_file() or (others and not (out / _MARK).is_file()):
+    others = [file for file in sorted(out.glob("*")) if not file.name.startswith(".")]
+    if out.is_file() or (others and read_record(record_of(out)) is None):
         raise InputError(
             f"{others[0] if others else out} is not of a simulation; give a new folder for the "
             "recording."
         )
-
-
-def _clear(out: Path) -> None:
-    """Take away what an earlier simulation left, and mark the folder as one's before all else."""
-    (out / _MARK).parent.mkdir(parents=True, exist_ok=True)
-    with replacing(out / _MARK) as aside:
-        aside.write_text("What is true of a recording that murkscan has simulated.\n", "utf-8")
-    left = [
-        out / "recording.mkv",
-        out / "navigation.csv",
-        out / "truth" / "mesh.ply",
-        out / "frames" / "times.csv",
-    ]
-    left += (file for file in (out / "frames").glob("*.png") if file.stem.isdecimal())
-    for path in left:
-        path.unlink(missing_ok=True)
 
 
 def _draw_ahead(simulator: Simulator) -> Iterator[SimulatedFrame]:
@@ -146,54 +162,61 @@ def _draw_ahead(simulator: Simulator) -> Iterator[SimulatedFrame]:
                 future.cancel()
 
 
-def _write_rig_and_way(scene: Scene, out: Path) -> None:
-    save_rig(out / "rig.toml", scene.rig)
-    save_poses(out / "poses.csv", _as_logged(scene, scene.trajectory.at(scene.times)))
+def _write_rig_and_trajectory(scene: Scene, files: StageFiles) -> None:
+    with files.making("rig.toml") as path:
+        save_rig(path, scene.rig)
+    with files.making("poses.csv") as path:
+        save_poses(path, _as_logged(scene, scene.trajectory.at(scene.times)))
     if scene.navigation is not None:
-        way = _as_logged(scene, scene.trajectory)
-        save_poses(out / "navigation.csv", log_navigation(scene.navigation, way, seed=scene.seed))
+        trajectory = _as_logged(scene, scene.trajectory)
+        with files.making("navigation.csv") as path:
+            save_poses(path, log_navigation(scene.navigation, trajectory, seed=scene.seed))
 
 
-def _as_logged(scene: Scene, way: Trajectory) -> Trajectory:
+def _as_logged(scene: Scene, trajectory: Trajectory) -> Trajectory:
     """Give poses of the vehicle, which is what logs hold, where the camera sits on one."""
     mount = scene.rig.vehicle_from_camera
-    return way if mount is None else way.follow_mount(mount.inverse())
+    return trajectory if mount is None else trajectory.follow_mount(mount.inverse())
 
 
 @contextmanager
-def _keeping(scene: Scene, out: Path) -> Iterator[tuple[Path, Keep]]:
-    """Keep pictures as the scene's recorder does."""
+def _keeping(scene: Scene, files: StageFiles) -> Iterator[tuple[str, Keep]]:
+    """Keep pictures as the scene's recorder does; gives the name of what it makes, too."""
     recorder, pictures = scene.recorder, scene.times[:: scene.row_step]
     if recorder.codec != "png":
-        path = out / "recording.mkv"
         rate = 1 / float(np.median(np.diff(pictures))) if len(pictures) > 1 else 25.0
         if rate > _FASTEST:
             raise InputError(
                 f"sensor.codec {recorder.codec}: times in milliseconds are too coarse for "
                 f"motion.frame_rate_hz {rate:g}; keep the pictures as png."
             )
-        with writing_video(
-            path,
-            scene.rig.camera.size,
-            rate=rate,
-            codec=recorder.codec,
-            crf=recorder.crf,
-            bitrate=recorder.bitrate,
-            quality=recorder.quality,
-            interlaced=scene.sensor.interlaced,
-            is_colour=scene.sensor.colour != "mono",
-        ) as write:
-            yield path, write
+        with (
+            files.making("recording.mkv") as path,
+            writing_video(
+                path,
+                scene.rig.camera.size,
+                rate=rate,
+                codec=recorder.codec,
+                crf=recorder.crf,
+                bitrate=recorder.bitrate,
+                quality=recorder.quality,
+                interlaced=scene.sensor.interlaced,
+                is_colour=scene.sensor.colour != "mono",
+            ) as write,
+        ):
+            yield "recording.mkv", write
         return
-    folder, times = out / "frames", dict[str, float]()
+    times = dict[str, float]()
 
     def keep(picture: np.ndarray, time: float) -> None:
         name = f"{len(times):06d}.png"
-        write_image(folder / name, picture)
+        with files.making(f"frames/{name}") as path:
+            write_image(path, picture)
         times[name] = time
 
-    yield folder, keep
-    write_times(folder / "times.csv", times)
+    yield "frames", keep
+    with files.making("frames/times.csv") as path:
+        write_times(path, times)
 
 
 def _weave(scene: Scene, fields: list[np.ndarray]) -> np.ndarray:

@@ -38,6 +38,18 @@ def run_stage(
     if (result := stage.result()) is not None:
         stage.settle()
         return result
+    return make_stage(project, stage, make, prepare=prepare, progress=progress)
+
+
+def make_stage(
+    project: Project,
+    stage: Stage[R],
+    make: Callable[[T], R],
+    *,
+    prepare: Callable[[], T],
+    progress: Progress,
+) -> R:
+    """Run a stage whether it is done or not; the arguments are those of `run_stage`."""
     with project.hold():
         since = time.monotonic()
         progress(stage.kind.word, 0, None)
