@@ -25,13 +25,13 @@ from murkscan.calibrate import (
 )
 from murkscan.calibrate.board.stripe import keep_on_board, mask_to_sheet
 from murkscan.capture.folder import natural_key
+from murkscan.capture.photos import BoardPhotos
 from murkscan.extract import AbstractExtractor, GrayGravity, Murk
 from murkscan.geometry import fit_plane
 from murkscan.io.poses import save_poses
 from murkscan.io.rig_toml import load_rig
 from murkscan.io.times_csv import write_times
 from murkscan.optics import project
-from murkscan.survey.board_photos import BoardPhotos
 from murkscan.survey.calibrate_camera import calibrate_camera_from_photos
 from murkscan.survey.calibrate_laser import calibrate_laser_from_photos
 from murkscan.survey.calibrate_mount import calibrate_mount_from_photos

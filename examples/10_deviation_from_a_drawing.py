@@ -10,8 +10,7 @@ the command line: ``murkscan measure dive deviation --reference hull.stl --unit 
 from pathlib import Path
 from runpy import run_path
 
-from murkscan.survey.deviation import compare_scan
-from murkscan.survey.reference import load_reference
+from murkscan.survey.deviation import compare_scan, load_reference
 
 first = run_path(str(Path(__file__).with_name("01_scan_a_recording.py")))
 project, drawing = first["project"], first["folder"] / "recording" / "truth" / "mesh.ply"

@@ -11,6 +11,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from murkscan.cli.main import run
+from murkscan.cloud.blocks import cut_blocks
 from murkscan.errors import Degenerate, FormatError, InputError, MissingResult, NotEnoughData
 from murkscan.io.cloud_files import load_cloud_file, writing_cloud_file
 from murkscan.project import (
@@ -31,7 +32,6 @@ from murkscan.survey.cloud import build_cloud
 from murkscan.survey.export import export_cloud
 from murkscan.survey.merge import merge_passes
 from murkscan.survey.mesh import export_mesh
-from murkscan.survey.profile_blocks import cut_blocks
 from murkscan.types.pose import Pose
 from murkscan.types.profile import Profile
 from murkscan.types.stripe import empty_stripe

@@ -22,7 +22,7 @@ from murkscan.project import (
     TriangulateResult,
     ViewResult,
 )
-from murkscan.survey.origin import name_recording, read_calibration, when_written
+from murkscan.project.origin import name_recording, read_calibration, when_written
 from murkscan.survey.recorded import list_commands, when_began
 from murkscan.types.frame_times import FrameTimes
 

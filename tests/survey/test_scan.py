@@ -11,10 +11,10 @@ import pytest
 
 import murkscan as ms
 from murkscan.capture import Skip
+from murkscan.capture.chunks import cut_chunks
 from murkscan.geometry.mesh_distance import distance_to_mesh
 from murkscan.io.mesh_files import load_mesh
 from murkscan.project import EXTRACT, TRIANGULATE
-from murkscan.survey.chunks import cut_chunks
 from murkscan.survey.cloud import build_cloud
 from murkscan.survey.demo import Errors, run_demo
 from murkscan.survey.extract import extract_recording

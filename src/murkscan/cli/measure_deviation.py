@@ -11,8 +11,8 @@ from .words import print_table, say, tell
 
 if TYPE_CHECKING:
     from ..measure import DentSearch
+    from ..measure.reference import Reference
     from ..project import Project
-    from ..survey.reference import Reference
     from ..types.dent import Dent
 
 Unit = Annotated[Literal["m", "cm", "mm", "in"], Parameter(help="Unit of the file.")]
@@ -114,7 +114,8 @@ def dents(
 
 
 def _load(project: "Project", path: Path, unit: Unit, as_given: bool) -> "Reference":
-    from ..survey.reference import lay_on, load_reference
+    from ..measure.reference import lay_on
+    from ..survey.deviation import load_reference
 
     reference = load_reference(path, unit=unit)
     return reference if as_given else lay_on(reference, project.load_cloud())

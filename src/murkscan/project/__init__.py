@@ -1,5 +1,6 @@
 """A scan's folder: its stages, what each of them made and said, and whether it is still so."""
 
+from ..types.part_note import PartNote as PartNote
 from .describe import describe as describe
 from .describe import digest as digest
 from .files import StageFiles as StageFiles
@@ -23,7 +24,6 @@ from .results import MeasureResult as MeasureResult
 from .results import MeshResult as MeshResult
 from .results import MotionResult as MotionResult
 from .results import OpenDirectionResult as OpenDirectionResult
-from .results import PartNote as PartNote
 from .results import PassRecord as PassRecord
 from .results import PassResult as PassResult
 from .results import RecordingRecord as RecordingRecord

@@ -31,13 +31,14 @@ from ..types.cloud import PointCloud
 from ..types.cloud_part import CloudPart
 from ..types.frame_times import FrameTimes
 from ..types.mesh import Mesh
+from ..types.part_note import PartNote
 from ..types.profile import Profile
 from ..types.stripe import Stripe
 from ..types.trajectory import Trajectory
 from .files import StageFiles
 from .kinds import CLOUD, EXTRACT, MESH, MOTION, REPORT, STAGES, TRIANGULATE, VIEW, Kind
 from .lock import hold
-from .results import PartNote, ScanRecord
+from .results import ScanRecord
 from .stage import Finished, Key, Stage, read_record, record_of
 
 R = TypeVar("R")

@@ -9,12 +9,10 @@ import numpy as np
 
 from ..types.arrays import Indices, SignedFrameNumbers
 from ..types.background import Attenuation
+from ..types.part_note import Skipped as Skipped
 
 if TYPE_CHECKING:
     from ..geometry.alignment import Alignment
-
-Skipped = tuple[int, int, str]
-"""First frame that could not be read, how many, and why."""
 
 
 @dataclass(frozen=True)
@@ -231,19 +229,6 @@ class SimulateResult:
     """Frames, fields counted."""
     centres: int
     """True centres of the stripe."""
-
-
-@dataclass(frozen=True)
-class PartNote:
-    """The frames that one part of extract covers."""
-
-    frames: tuple[int, ...]
-    """Those that were read, by their index in the recording."""
-    times: tuple[float, ...]
-    """When each was taken [s]."""
-    points: tuple[int, ...]
-    """Stripe centres of each."""
-    skips: tuple[Skipped, ...]
 
 
 @dataclass(frozen=True)

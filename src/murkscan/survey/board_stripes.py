@@ -18,13 +18,13 @@ from ..calibrate.board.stripe import (
     mask_to_sheet,
 )
 from ..calibrate.board.view import BoardView
+from ..capture.photos import BoardPhotos, Photo
 from ..extract import AbstractExtractor
 from ..types.arrays import Image, Pixels
 from ..types.frame import Frame
 from ..types.laser import Laser
 from ..types.pose import Pose
 from ..types.rig import Rig
-from .board_photos import BoardPhotos, Photo
 from .progress import Progress
 
 _COLOURS = {"red": 650e-9, "green": 532e-9, "blue": 450e-9}

@@ -8,9 +8,9 @@ from ..calibrate.board.charuco import Markers, find_charuco
 from ..calibrate.board.chessboard import Chessboard
 from ..calibrate.board.corners import find_board, suggest_board
 from ..calibrate.board.view import BoardView
+from ..capture.photos import BoardPhotos
 from ..errors import InputError, NotEnoughData
 from ..types.arrays import Image
-from .board_photos import BoardPhotos
 from .progress import Progress
 
 _SUGGEST_FROM = 4

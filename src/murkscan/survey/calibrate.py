@@ -11,15 +11,15 @@ from ..calibrate.board.stripe import StripeOnBoard
 from ..calibrate.board.view import BoardView
 from ..calibrate.calibration import Calibration
 from ..calibrate.page import write_page
+from ..calibrate.record import record_step
+from ..calibrate.state import snapshot
 from ..calibrate.verdict import CalibrationVerdict, judge
+from ..capture.photos import BoardPhotos
 from ..errors import EstimationError, InputError
 from ..io.atomic import replacing
 from ..io.rig_toml import parse_rig, read_tables, save_calibration
-from .board_photos import BoardPhotos
 from .board_views import find_boards
 from .calibrate_drawing import SUFFIX, draw_photos
-from .calibration_record import record_step
-from .calibration_state import snapshot
 from .progress import Progress
 
 

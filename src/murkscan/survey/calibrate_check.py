@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 from ..calibrate.board.chessboard import Chessboard, Margin
 from ..calibrate.check import BoardCheck, LinedBoard, check_on_boards, judge_length
 from ..calibrate.verdict import CalibrationVerdict
+from ..capture.photos import BoardPhotos
 from ..errors import InputError
 from ..extract import AbstractExtractor, GrayGravity
 from ..io.rig_toml import load_rig
@@ -22,7 +23,6 @@ from ..types.arrays import Points, Vector
 from ..types.profile import Profile
 from ..types.rig import Rig
 from ..types.trajectory import Trajectory
-from .board_photos import BoardPhotos
 from .board_stripes import StripeFinder
 from .board_views import find_boards
 from .progress import Progress, silent

@@ -13,9 +13,9 @@ from ..calibrate.board.view import BoardView
 from ..calibrate.calibration import Calibration
 from ..calibrate.laser import sheet_of
 from ..calibrate.mount import circles_of
+from ..capture.photos import BoardPhotos
 from ..io.images import write_image
 from ..types.arrays import Pixels, Scalars
-from .board_photos import BoardPhotos
 from .progress import Progress
 
 SUFFIX = ".found.jpg"

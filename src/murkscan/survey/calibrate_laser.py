@@ -11,6 +11,7 @@ from ..calibrate.adjust.parameters import window_prior
 from ..calibrate.adjust.priors import join
 from ..calibrate.board.chessboard import Chessboard, Margin
 from ..calibrate.laser import calibrate_lasers
+from ..calibrate.state import tables_before
 from ..errors import InputError, MissingResult
 from ..extract import AbstractExtractor, GrayGravity
 from ..io.rig_toml import parse_rig, read_tables
@@ -19,7 +20,6 @@ from ..types.rig import Rig
 from ..types.rig_covariance import RigCovariance
 from .board_stripes import StripeFinder
 from .calibrate import BoardSession, CalibrationResult
-from .calibration_state import tables_before
 from .progress import Progress, silent
 
 

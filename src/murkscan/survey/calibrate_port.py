@@ -10,13 +10,13 @@ from ..calibrate.board.chessboard import Chessboard
 from ..calibrate.board.view import BoardView
 from ..calibrate.calibration import Calibration
 from ..calibrate.port import calibrate_port
+from ..calibrate.state import tables_before
 from ..errors import InputError, MissingResult
 from ..io.rig_toml import parse_rig, read_tables
 from ..types.port import FlatPort
 from ..types.rig import Rig
 from ..types.rig_covariance import RigCovariance
 from .calibrate import BoardSession, CalibrationResult
-from .calibration_state import tables_before
 from .progress import Progress, silent
 
 _LEAST, _MOST = 5e-4, 0.5

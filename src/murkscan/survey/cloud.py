@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..cloud import OUTLIER_RULES, AbstractOutlierRule, SeenCloud, find_outliers, merge_profiles
+from ..cloud.blocks import BLOCK, ProfileBlock, cut_blocks
 from ..project import (
     CLOUD,
     EXTRACT,
@@ -23,7 +24,6 @@ from ..types.laser import Axis
 from ..types.rig import Rig
 from ..types.trajectory import Trajectory
 from .common_part import spread_common
-from .profile_blocks import BLOCK, ProfileBlock, cut_blocks
 from .progress import Progress, silent
 from .stage_runner import run_stage
 

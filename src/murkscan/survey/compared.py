@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 from ..errors import Degenerate
 from ..geometry.alignment import Alignment
 from ..geometry.alignment_words import describe_alignment, turn_round
+from ..measure.reference import Reference, lay_on
 from ..project import AlignmentResult, Project
 from ..view import Model
-from .reference import lay_on, load_reference
 from .shown import choose_points, folder_of, has_surface, load_model
 
 _SAMPLE = 2_000_000
@@ -73,7 +73,8 @@ def compare_models(
 
 def _lay(other: Project, project: Project) -> Alignment:
     try:
-        laid = lay_on(load_reference(other.root), choose_points(project, _SAMPLE))
+        reference = Reference(other.load_mesh(), name=str(other.root))
+        laid = lay_on(reference, choose_points(project, _SAMPLE))
     except Degenerate as error:
         raise Degenerate(f"{error} With --as-given both stay as they are.") from error
     assert laid.alignment is not None

@@ -1,9 +1,11 @@
 """Compare a scan with a reference, and look for dents; keep what was found in OUT/measure."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
+from ..errors import InputError
 from ..io.deviation_files import save_deviation_csv, save_deviation_ply
 from ..io.images import write_image
 from ..measure import (
@@ -19,6 +21,7 @@ from ..measure import (
     require_dent_sizes,
     sigma_of_points,
 )
+from ..measure.reference import Reference, check_unit, read_reference
 from ..project import Project, StageFiles, find_trajectory
 from ..types.dent import Dent
 from ..types.deviation import Deviation
@@ -30,10 +33,29 @@ from ..view.render import render
 from ..view.values import SignedValues
 from ..view.views import standard_views
 from .measured import as_plain, keep_measurement, measuring
-from .reference import Reference
 from .sample import load_sample
 
 _PICTURES = ("front", "isometric")
+
+
+def load_reference(path: Path, *, unit: str = "m") -> Reference:
+    """Read a mesh file, or the surface of a finished scan's folder, as it is.
+
+    Args:
+        path: A .ply, .stl, .obj or .glb file, or a scan's folder.
+        unit: Unit of the file: m, cm, mm or in.
+
+    Raises:
+        InputError: The unit is unknown, or given for a scan; or the file is of another format.
+        FormatError: The file is no mesh, or has thousands of triangles in one place.
+        MissingResult: The folder holds no scan with a surface.
+    """
+    check_unit(unit)
+    if not path.is_dir():
+        return read_reference(path, unit=unit)
+    if unit != "m":
+        raise InputError(f"{path} is a scan, which is in metres; leave out the unit {unit}.")
+    return Reference(Project(path).load_mesh(), name=str(path))
 
 
 def compare_scan(

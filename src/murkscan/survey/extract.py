@@ -5,16 +5,16 @@ from contextlib import closing
 from dataclasses import dataclass
 
 from ..capture import AbstractRecording
+from ..capture.chunks import CHUNK, Chunk, Run, missing_runs, read_missing, read_run
 from ..distribute import AbstractExecutor, Threads
 from ..errors import InputError
 from ..extract import AbstractExtractor, check_stripes, require_extractor
+from ..extract.overlay_choice import choose_overlays, draw_overlays, name_candidates
 from ..project import EXTRACT, ExtractResult, PartNote, Project, describe
 from ..types.arrays import ColourImage
 from ..types.background import Background
 from ..types.rig import Rig
 from ..types.stripe import Stripe
-from .chunks import CHUNK, Chunk, Run, missing_runs, read_missing, read_run
-from .overlay import choose_overlays, draw_overlays, name_candidates
 from .progress import Progress, silent
 from .stage_runner import run_stage
 

@@ -3,9 +3,6 @@
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-import numpy as np
-from scipy.spatial.transform import Rotation
-
 from ..io.mesh_files import check_mesh_suffix, save_mesh
 from ..mesh import AbstractMesher, AbstractPaint, ByDepth, close_holes, decimate
 from ..project import CLOUD, MESH, MeshResult, Project, describe, find_trajectory, is_merged
@@ -137,6 +134,5 @@ def _towards(paint: AbstractPaint | None, project: Project) -> AbstractPaint | N
     trajectory = find_trajectory(project)
     if trajectory is None:
         return paint
-    attitudes = Rotation.from_quat(trajectory.quaternions, scalar_first=True)
-    x, y, z = (float(part) for part in attitudes.mean().apply(np.array([0.0, 0.0, 1.0])))
+    x, y, z = trajectory.line_of_sight().tolist()
     return ByDepth((x, y, z))

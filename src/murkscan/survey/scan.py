@@ -14,13 +14,13 @@ from ..io.rig_toml import as_tables
 from ..mesh import AbstractMesher, GridMesh
 from ..motion import AbstractMotion
 from ..project import Project, RecordingRecord, ScanRecord, describe, is_merged, load_recording
+from ..project.origin import read_calibration, when_written
 from ..triangulate import AbstractTriangulation, RaySheet
 from ..types.rig import Rig
 from .cloud import build_cloud
 from .extract import check_recording, extract_recording
 from .mesh import build_mesh
 from .motion import check_motion, follow_motion
-from .origin import read_calibration, when_written
 from .progress import Progress, silent
 from .report import write_report
 from .triangulate import triangulate_stripes

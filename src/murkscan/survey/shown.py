@@ -8,10 +8,10 @@ import numpy as np
 from ..errors import InputError, MissingResult
 from ..io.deviation_files import load_deviation_ply
 from ..project import CLOUD, MEASURE, MESH, Project, digest, find_frame_times, find_trajectory
+from ..project.origin import name_recording
 from ..types.cloud import PointCloud
 from ..view import Layer, Model, choose_fairly, model_of_scan
 from .measured import measurement_files
-from .origin import name_recording
 from .shift_field import trace_shift_field
 
 DEVIATION = "deviation"

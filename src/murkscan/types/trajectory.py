@@ -7,7 +7,7 @@ from jaxtyping import Float
 from scipy.spatial.transform import Rotation, Slerp
 
 from ..errors import InputError
-from .arrays import Mask, Points, Quaternions, Scalars
+from .arrays import Mask, Points, Quaternions, Scalars, Vector
 from .pose import Pose
 
 
@@ -88,6 +88,11 @@ class Trajectory:
         poses = self.at(moments)
         rotations = Rotation.from_quat(poses.quaternions, scalar_first=True).as_matrix()
         return np.einsum("nji,nj->ni", rotations[which], points - poses.positions[which])
+
+    def line_of_sight(self) -> Vector:
+        """Compute the mean direction in which the camera looked, in the world; unit length."""
+        mean = Rotation.from_quat(self.quaternions, scalar_first=True).mean()
+        return np.asarray(mean.apply(np.array([0.0, 0.0, 1.0])))
 
     def follow_mount(self, source_from_camera: Pose) -> "Trajectory":
         """Give world_from_camera where this is world_from_source: a vehicle with a mount."""

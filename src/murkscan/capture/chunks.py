@@ -5,8 +5,8 @@ from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 from itertools import count
 
-from ..capture import AbstractRecording, Skip
 from ..types.frame import Frame
+from .base import AbstractRecording, Skip
 
 CHUNK = 64
 """Frames a part: 27 MB of pictures at 720 × 576."""

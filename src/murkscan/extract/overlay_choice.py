@@ -6,11 +6,11 @@ so a run that was killed, or lost a part, ends with the same pictures as any oth
 
 from collections.abc import Iterable, Sequence
 
-from ..extract import draw_stripe
-from ..project import PartNote
 from ..types.arrays import ColourImage
 from ..types.frame import Frame
+from ..types.part_note import PartNote
 from ..types.stripe import Stripe
+from .overlay import draw_stripe
 
 _POOR = "_poor"
 """What the names of the poorest frames' pictures end in."""

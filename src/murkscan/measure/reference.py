@@ -12,7 +12,6 @@ from ..geometry.alignment_fit import no_overlap
 from ..geometry.clip import clip_mesh
 from ..geometry.surface_points import SurfacePoints
 from ..io.mesh_files import load_mesh
-from ..project import Project
 from ..types.arrays import Directions, Points, Scalars
 from ..types.cloud import PointCloud
 from ..types.mesh import Mesh
@@ -54,24 +53,28 @@ class Reference:
         return sigma
 
 
-def load_reference(path: Path, *, unit: str = "m") -> Reference:
-    """Read a mesh file, or the surface of a finished scan's folder, as it is.
-
-    Args:
-        path: A .ply, .stl, .obj or .glb file, or a scan's folder.
-        unit: Unit of the file: m, cm, mm or in.
+def check_unit(unit: str) -> None:
+    """Refuse a unit that no mesh comes in.
 
     Raises:
-        InputError: The unit is unknown, or given for a scan; or the file is of another format.
-        FormatError: The file is no mesh, or has thousands of triangles in one place.
-        MissingResult: The folder holds no scan with a surface.
+        InputError: It is unknown.
     """
     if unit not in UNITS:
         raise InputError(f"The unit must be one of {', '.join(UNITS)}, got {unit!r}.")
-    if path.is_dir():
-        if unit != "m":
-            raise InputError(f"{path} is a scan, which is in metres; leave out the unit {unit}.")
-        return Reference(Project(path).load_mesh(), name=str(path))
+
+
+def read_reference(path: Path, *, unit: str = "m") -> Reference:
+    """Read a mesh file as it is.
+
+    Args:
+        path: A .ply, .stl, .obj or .glb file.
+        unit: Unit of the file: m, cm, mm or in.
+
+    Raises:
+        InputError: The unit is unknown, or the file is of another format.
+        FormatError: The file is no mesh, or has thousands of triangles in one place.
+    """
+    check_unit(unit)
     mesh = load_mesh(path)
     _require_spread(mesh, path)
     return Reference(replace(mesh, vertices=mesh.vertices * UNITS[unit]), name=str(path))

@@ -5,12 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from ..calibrate.adjust.parameters import INTRINSICS, MOUNT
-from ..calibrate.board.chessboard import Chessboard
-from ..calibrate.calibration import Calibration
-from ..calibrate.laser import sheet_of
-from ..calibrate.mount import circles_of
-from ..calibrate.verdict import CalibrationVerdict
+from .adjust.parameters import INTRINSICS, MOUNT
+from .board.chessboard import Chessboard
+from .calibration import Calibration
+from .laser import sheet_of
+from .mount import circles_of
+from .verdict import CalibrationVerdict
 
 _SHORT = ("fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3")
 """What a camera's record calls its parameters."""

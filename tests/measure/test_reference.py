@@ -8,7 +8,8 @@ import pytest
 
 from murkscan import Degenerate, FormatError, InputError, Mesh, NotEnoughData, PointCloud
 from murkscan.io.mesh_files import save_mesh
-from murkscan.survey.reference import lay_on, load_reference
+from murkscan.measure.reference import lay_on
+from murkscan.survey.deviation import load_reference
 
 
 def _blade(x, y):

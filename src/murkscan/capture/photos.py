@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from ..capture.container import open_video
-from ..capture.decode import Loss, decode_pictures
-from ..capture.folder import list_pictures
 from ..errors import FormatError, InputError
 from ..io.images import read_colour
 from ..types.arrays import ColourImage, Image
+from .container import open_video
+from .decode import Loss, decode_pictures
+from .folder import list_pictures
 
 _MAX_FROM_VIDEO = 100
 """Pictures taken out of a video, spread over it; neighbouring ones show the same."""
