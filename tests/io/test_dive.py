@@ -1,5 +1,6 @@
 """What MCAPs, bags and tlogs hold is read, whatever became of them."""
 
+import pickle
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -105,6 +106,21 @@ def test_logs_beside_a_video_say_the_same(tmp_path, dive):
     for way in ways:
         np.testing.assert_allclose(way.positions, dive.way.positions, atol=1e-6)
         np.testing.assert_allclose(way.times, BEGIN + dive.way.times, atol=1e-6)
+
+
+def test_h265_is_read_from_any_place(tmp_path, dive):
+    packets = encode_h264([numbered(k) for k in range(COUNT)], RATE, gop=10, codec="libx265")
+    write_blueos(tmp_path / "a.mcap", replace(dive, packets=packets), form="h265")
+    recording = open_recording(tmp_path / "a.mcap", fields="progressive")
+    assert [number_of(frame.image) for frame in recording.frames()] == list(range(COUNT))
+    assert recording.index.is_key.sum() == 6
+    assert number_of(next(recording.frames(37)).image) == 37
+
+
+def test_a_recording_goes_to_other_processes(tmp_path, dive):
+    write_blueos(tmp_path / "a.mcap", dive)
+    there = pickle.loads(pickle.dumps(open_recording(tmp_path / "a.mcap", fields="progressive")))
+    assert [number_of(frame.image) for frame in there.frames(50)] == list(range(50, COUNT))
 
 
 def test_a_file_that_was_cut_off_is_read_to_its_last_whole_chunk(tmp_path, dive):

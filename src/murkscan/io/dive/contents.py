@@ -190,6 +190,7 @@ class _Gathering:
                     self._note(str(error).rstrip("."))
             if number % 1000 == 0 and self._file.kind in ("MCAP", "bag of ROS 1"):
                 progress(message.place & ((1 << 48) - 1), num_bytes)
+        progress(num_bytes, num_bytes)
         return self._conclude(num_bytes)
 
     def _note(self, words: str) -> None:
