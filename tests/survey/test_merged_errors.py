@@ -5,12 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from murkscan.geometry.alignment import align_clouds
+from murkscan.geometry.surface_points import nearest_in_cloud
 from murkscan.io.ply import save_cloud
 from murkscan.io.rig_toml import as_tables
 from murkscan.optics import intersect_rays_with_sheet, perturb_rig
+from murkscan.optics.merged_errors import MergedErrors
 from murkscan.optics.uncertainty import error_modes
 from murkscan.optics.view import back_project
-from murkscan.optics.view import project as look_at
+from murkscan.optics.view import project as to_pixels
 from murkscan.project import (
     EXTRACT,
     MOTION,
@@ -21,6 +24,7 @@ from murkscan.project import (
     Project,
     TriangulateResult,
 )
+from murkscan.project.passes import PassSource, look_at, number_passes
 from murkscan.survey.cloud import build_cloud
 from murkscan.survey.merge import merge_passes
 from murkscan.survey.sample import load_sample
@@ -107,7 +111,7 @@ def scanned(root, rig, *, spacing, back):
     """A pass over hills, that a rig saw which is not quite the one that it is taken for."""
     surface = (lambda x, y: hills(-x, -y)) if back else hills
     profile, trajectory = scan(surface, spacing=spacing)
-    profile = replace(profile, pixels=look_at(RIG.camera, profile.points))
+    profile = replace(profile, pixels=to_pixels(RIG.camera, profile.points))
     rays = back_project(rig.camera, profile.pixels)
     profile = replace(profile, points=intersect_rays_with_sheet(rays, rig.lasers[0]))
     frames, times = np.unique(profile.frame), np.unique(profile.time)
@@ -150,3 +154,32 @@ def test_merged_points_move_with_an_error_of_their_rig_as_is_stated(tmp_path, nu
     # By 0.8 %, since ICP pairs other points then. Were the alignment taken to stay, by 138 % for
     # the tilt.
     assert np.sqrt(np.mean((moved - expected) ** 2) / np.mean(moved**2)) < 0.03
+
+
+def test_an_error_of_a_pass_s_poses_that_alignment_sees_is_answered(tmp_path):
+    """A second pass whose log is shifted and turned as a whole ends where it would anyway."""
+    passes = [scanned(tmp_path / "a", RIG, spacing=2e-3, back=False)]
+    passes.append(scanned(tmp_path / "b", RIG, spacing=2.1e-3, back=True))
+    sources = [PassSource(path) for path in passes]
+    records = [one.as_record(tmp_path / "out") for one in sources]
+    first, second = number_passes([*map(look_at, sources, records)])
+    seen = [one.see(Pose.identity()) for one in (first, second)]
+    whole = np.zeros((len(seen[1].trajectory.times), 6, 2))
+    whole[:, 0, 0], whole[:, 3, 1] = 1e-3, 1e-3  # a shift along x [m], a turn about x [rad]
+    # A turn about each camera's own place is one of the world with a shift that follows.
+    whole[:, :3, 1] = np.cross([1e-3, 0, 0], seen[1].trajectory.positions)
+    seen[1] = replace(seen[1], trajectory=replace(seen[1].trajectory, errors=whole))
+    errors = MergedErrors.of_passes(seen)
+    clouds = [one.sample() for one in (first, second)]
+    alignment = align_clouds(clouds[1], clouds[0])
+    at = alignment.pairs.points
+    ours, theirs = (cloud[nearest_in_cloud(cloud, at)] for cloud in clouds[::-1])
+    one, zero = np.ones(len(at), int), np.zeros(len(at), int)
+    apart = errors.shifts(one, ours) - errors.shifts(zero, theirs)
+    laid = errors.lay(1, alignment.centre, np.zeros((6, 6)), alignment.answer(apart))
+    poses = slice(2, 4)  # behind the two errors of the rig
+    before = errors.shifts(one, ours)[:, :, poses]
+    after = laid.shifts(one, ours)[:, :, poses]
+    assert np.abs(before).max() > 5e-4
+    # Points lie a millimetre from the pairs that stand for them; a thousandth of that is turned.
+    assert np.abs(after).max() < 2e-6

@@ -1,13 +1,15 @@
 """How the points of several passes move together with the errors of their rigs and alignments.
 
-A rig's errors move all passes that it saw, each along its own cameras. A pass that is laid on
-others by their overlap gives way to that: it turns and shifts as a whole, by what the errors of
-both sides bring apart there, and by the error of the alignment itself.
+A rig's errors move all passes that it saw, each along its own cameras; those of a pass's poses
+move that pass alone. A pass that is laid on others by their overlap gives way to that: it turns and
+shifts as a whole, by what the errors of both sides bring apart there, and by the error of the
+alignment itself.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import takewhile
 
 import numpy as np
 from jaxtyping import Float
@@ -17,6 +19,7 @@ from ..geometry.stripe_blur import Sight
 from ..types.arrays import Indices, Vector
 from ..types.cloud import PointCloud
 from ..types.rig import Rig
+from ..types.rig_covariance import RigCovariance
 from ..types.trajectory import Trajectory
 from .seen_points import find_pixels, look_back, shift_points
 from .uncertainty import Shifts, error_modes
@@ -64,12 +67,12 @@ class MergedErrors:
     def basis(self) -> Float[np.ndarray, "parameters modes"]:
         """Change of each parameter with each independent error, at one standard deviation.
 
-        The parameters are those of each rig, in the order of its covariance, and six numbers of
-        each pass's alignment.
+        The parameters are those of each rig, in the order of its covariance, the errors of each
+        pass's poses, and six numbers of each pass's alignment.
         """
-        known = {one.key: one.rig.covariance for one in self.passes if one is not None}
-        modes = [error_modes(covariance) for covariance in known.values()]
-        return block_diag(*modes, np.eye(6 * len(self.passes)))
+        rigs = [error_modes(covariance) for covariance in self._covariances.values()]
+        poses = sum(0 if one is None else one.trajectory.num_errors for one in self.passes)
+        return block_diag(*rigs, np.eye(poses + 6 * len(self.passes)))
 
     def shifts(self, owner: Indices, cloud: PointCloud) -> Shifts:
         """Compute how far points move with each independent error, in the merged world [m].
@@ -87,8 +90,9 @@ class MergedErrors:
     @property
     def is_stated(self) -> bool:
         """Whether a rig or an alignment says how far it may be off."""
-        rigs = any(one is not None and one.rig.covariance.names for one in self.passes)
-        return rigs or any(one is not None for one in self.answers)
+        known = [one for one in self.passes if one is not None]
+        seen = any(one.rig.covariance.names or one.trajectory.num_errors for one in known)
+        return seen or any(one is not None for one in self.answers)
 
     def look_back(self, owner: Indices, cloud: PointCloud) -> Sight | None:
         """Find from where each point was seen; None where a pass does not know it.
@@ -144,21 +148,29 @@ class MergedErrors:
             times = cloud.frame.astype(float)
             pixels = find_pixels(cloud.points, times, one.trajectory, one.rig)
             own = _complete(shift_points(pixels, cloud.laser, times, one.trajectory, one.rig))
-            first = self._first_mode(one.key)
-            shifts[:, :, first : first + own.shape[2]] = own
+            shifts[:, :, self._modes_of_rig(one.key)] = own
+        if one is not None and one.trajectory.num_errors:
+            by_poses = one.trajectory.shifts(cloud.points, cloud.frame.astype(float))
+            shifts[:, :, self._modes_of_poses(number)] = by_poses
         if answer is not None:
             turns, moves = np.split(answer.moves @ self.basis, 2)
             arms = (cloud.points - answer.centre)[:, None]
             shifts += np.cross(turns.T, arms).transpose(0, 2, 1) + moves
         return shifts
 
-    def _first_mode(self, key: str) -> int:
-        first = 0
-        for one in {one.key: one for one in self.passes if one is not None}.values():
-            if one.key == key:
-                break
-            first += error_modes(one.rig.covariance).shape[1]
-        return first
+    @property
+    def _covariances(self) -> dict[str, RigCovariance]:
+        return {one.key: one.rig.covariance for one in self.passes if one is not None}
+
+    def _modes_of_rig(self, key: str) -> slice:
+        counts = {name: error_modes(one).shape[1] for name, one in self._covariances.items()}
+        first = sum(counts[name] for name in takewhile(lambda name: name != key, counts))
+        return slice(first, first + counts[key])
+
+    def _modes_of_poses(self, number: int) -> slice:
+        after = [one.trajectory.num_errors for one in self.passes[number:] if one is not None]
+        first = self.basis.shape[1] - 6 * len(self.passes) - sum(after)
+        return slice(first, first + after[0])
 
 
 def _complete(shifts: Shifts) -> Shifts:

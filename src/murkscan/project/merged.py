@@ -2,10 +2,11 @@
 
 import numpy as np
 
-from ..errors import MissingResult
+from ..errors import FormatError, MissingResult
 from ..io.rig_toml import parse_rig
 from ..optics.merged_errors import Answer, MergedErrors, SeenPass
 from ..types.rig import Rig
+from ..types.trajectory import Trajectory
 from .describe import digest
 from .folder import Project
 from .kinds import CLOUD, MOTION
@@ -43,22 +44,49 @@ def list_unstated(project: Project) -> list[str]:
 
 
 def load_merged_errors(project: Project) -> MergedErrors:
-    """Read how the points of a merged cloud move with the errors of its rigs and alignments.
+    """Read how the points of a merged cloud move with all errors that are stated.
+
+    They are those of its passes' rigs and poses, and of their alignments.
 
     Raises:
         MissingResult: A stage has not been finished, or the cloud is of an earlier version.
-        FormatError: A rig or the poses are damaged.
+        FormatError: A rig, the poses or the record are damaged.
     """
     records, told = load_passes(project), project.finished(CLOUD).result.passes
     trajectory = project.load_trajectory() if project.finished(MOTION).result.poses else None
-    seen: list[SeenPass | None] = []
+    seen, first = list[SeenPass | None](), 0
     for record, one in zip(records, told, strict=True):
-        rig, times = load_pass_rig(project, record), np.array(one.frames[:1], float)
-        if rig is None or trajectory is None or not trajectory.has(times).all():
+        rig, own = load_pass_rig(project, record), _part_of(trajectory, one, first)
+        if rig is None or own is None:
             seen.append(None)
         else:
-            seen.append(SeenPass(rig, trajectory, rig_key(record)))
-    return MergedErrors(seen, [_answer(one) for one in told])
+            seen.append(SeenPass(rig, own, rig_key(record)))
+        first += one.pose_errors
+    errors = MergedErrors(seen, [_answer(one) for one in told])
+    for answer in errors.answers:
+        if answer is not None and answer.moves.shape != (6, len(errors.basis)):
+            raise FormatError(
+                f"{project.root / 'cloud' / 'stage.json'} is damaged: its answers are not of its "
+                "passes. Delete it and run `murkscan merge` again."
+            )
+    return errors
+
+
+def _part_of(trajectory: Trajectory | None, one: PassResult, first: int) -> Trajectory | None:
+    """Take the poses of a pass out of those of all; its errors begin with the `first`."""
+    if trajectory is None:
+        return None
+    mine = (trajectory.times >= one.frames[0]) & (trajectory.times <= one.frames[1])
+    if not mine.any():
+        return None
+    return Trajectory(
+        trajectory.times[mine],
+        trajectory.positions[mine],
+        trajectory.quaternions[mine],
+        None
+        if trajectory.errors is None
+        else trajectory.errors[mine][:, :, first : first + one.pose_errors],
+    )
 
 
 def rig_key(record: PassRecord) -> str:
@@ -71,4 +99,8 @@ def rig_key(record: PassRecord) -> str:
 def _answer(told: PassResult) -> Answer | None:
     if told.alignment is None:
         return None
-    return Answer(np.array(told.alignment.centre), np.array(told.answers))
+    try:
+        moves = np.array(told.answers, float)
+    except ValueError:  # rows of several lengths
+        moves = np.zeros((0, 0))
+    return Answer(np.array(told.alignment.centre), moves)

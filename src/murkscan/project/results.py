@@ -140,9 +140,11 @@ class PassResult:
     """Its own number of the first of its frames."""
     points: int = 0
     """Its points, before any were thinned out."""
+    pose_errors: int = 0
+    """How many independent errors its poses have."""
     answers: tuple[tuple[float, ...], ...] = ()
-    """Change of its turn about the centre [rad] and of its shift [m] with each error of all rigs
-    and alignments; see `MergedErrors`. None for a pass that stays."""
+    """Change of its turn about the centre [rad] and of its shift [m] with each error of all rigs,
+    poses and alignments; see `MergedErrors`. None for a pass that stays."""
 
 
 @dataclass(frozen=True)

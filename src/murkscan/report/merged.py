@@ -50,6 +50,8 @@ class ReportedPass:
     """Share of it that lies on passes before it."""
     rms: float | None
     """Root mean square distance there when it was laid [m]."""
+    laid_on: Sequence[float]
+    """Share of that overlap in each pass before it."""
     rig: int | None
     """Number of its rig among those below; None where it is not known."""
 
@@ -228,6 +230,7 @@ def _as_plain_pass(one: ReportedPass) -> dict[str, Any]:
         "overlap": one.overlap,
         "rms_mm": None if one.rms is None else round_off(1e3 * one.rms),
         "rig": one.rig,
+        "laid_on": [round_off(share) for share in one.laid_on],
     }
 
 

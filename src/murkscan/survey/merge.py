@@ -117,9 +117,7 @@ def _follow(project: Project, sources: Sequence[PassSource], merged: CloudResult
     def make(trajectories: list[Trajectory | None]) -> MotionResult:
         known = [one for one in trajectories if one is not None]
         if known:
-            columns = ("times", "positions", "quaternions")
-            joined = (np.concatenate([getattr(one, name) for one in known]) for name in columns)
-            project.save_trajectory(Trajectory(*joined))
+            project.save_trajectory(Trajectory.concatenate(known))
         lengths = [one.frames[1] - one.frames[0] + 1 for one in merged.passes]
         missing = [n for n, one in zip(lengths, trajectories, strict=True) if one is None]
         return MotionResult(sum(len(one.times) for one in known), sum(missing))
@@ -226,6 +224,7 @@ def _tell(one: NumberedPass, laid: _Laid) -> PassResult:
             "be, were left out"
         )
     alignment = laid.alignment
+    poses = one.source.trajectory(one.low, one.frames, laid.pose)
     return PassResult(
         path=str(one.source.path),
         frames=one.frames,
@@ -235,6 +234,7 @@ def _tell(one: NumberedPass, laid: _Laid) -> PassResult:
         laid_on=tuple(laid.shares),
         first_frame=one.low,
         points=one.count,
+        pose_errors=0 if poses is None else poses.num_errors,
         answers=() if laid.answers is None else tuple(map(tuple, laid.answers.tolist())),
     )
 

@@ -94,6 +94,7 @@ def _describe_pass(record: PassRecord, told: PassResult, rig: int | None) -> Rep
         overlap=None if moved is None else moved.overlap,
         rms=None if moved is None else moved.rms,
         rig=rig,
+        laid_on=told.laid_on,
     )
 
 

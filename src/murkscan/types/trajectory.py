@@ -1,5 +1,6 @@
 """Where the camera was at which time."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,6 +33,30 @@ class Trajectory:
             raise InputError(
                 f"A trajectory needs strictly increasing times, got {len(self.times)} of them."
             )
+
+    @classmethod
+    def concatenate(cls, parts: Sequence["Trajectory"]) -> "Trajectory":
+        """Put trajectories one after another, at least one; the errors of each are its own.
+
+        Raises:
+            InputError: Their times do not increase.
+        """
+        columns = ("times", "positions", "quaternions")
+        joined = [np.concatenate([getattr(part, name) for part in parts]) for name in columns]
+        counts = [part.num_errors for part in parts]
+        errors = np.zeros((sum(len(part.times) for part in parts), 6, sum(counts)))
+        row = column = 0
+        for part, count in zip(parts, counts, strict=True):
+            if part.errors is not None:
+                errors[row : row + len(part.times), :, column : column + count] = part.errors
+            row, column = row + len(part.times), column + count
+        times, positions, quaternions = joined
+        return cls(times, positions, quaternions, errors if any(counts) else None)
+
+    @property
+    def num_errors(self) -> int:
+        """Count its independent errors."""
+        return 0 if self.errors is None else self.errors.shape[2]
 
     def at(self, times: Scalars) -> "Trajectory":
         """Interpolate: positions linearly, attitudes by slerp; times [s] strictly increasing.
