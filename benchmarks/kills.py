@@ -16,7 +16,10 @@ from typing import Any
 
 from harness import Figure, tell
 
-OPERATIONS = {"model": 110, "again": 60, "merge": 15, "mesh": 12, "pages": 12, "export": 6}
+OPERATIONS = {
+    "model": 110, "again": 60, "merge": 15, "mesh": 12, "pages": 12, "export": 6, "measure": 12,
+    "simulate": 10,
+}  # fmt: skip
 """File operations that are drawn of each job."""
 TIMES = {"model": 20, "again": 10}
 """Moments in time that are drawn of each job."""

@@ -111,6 +111,32 @@ def run_merge(folder: Path, out: Path) -> None:
     merge_passes([folder / "a", folder / "b"], out)
 
 
+def run_measure(folder: Path, out: Path) -> None:
+    """Cut a section, of which there was one with other files, and measure a plane."""
+    import numpy as np
+
+    from murkscan.measure import measure_plane
+    from murkscan.project import Project
+    from murkscan.survey.measure import measure_cut, measure_points
+    from murkscan.types.plane import Plane
+
+    project = Project(out)
+    across = Plane.through(project.load_cloud().points.mean(axis=0), np.array([0.0, 1.0, 0.0]))
+    for formats in (["csv", "svg"], ["svg"]):  # DXF states the time and a number drawn at random
+        measure_cut(project, across, formats=formats)
+    measure_points(project, measure_plane)
+
+
+def run_simulate(folder: Path, out: Path) -> None:
+    """Simulate a recording where there is another one."""
+    from murkscan.survey.simulate import simulate_recording
+
+    from .scenes import hull_scene, smaller
+
+    for frames in (6, 4):
+        simulate_recording(smaller(hull_scene(num_frames=frames), 3), out)
+
+
 def run_export(folder: Path, out: Path) -> None:
     """Write a cloud in another format."""
     from murkscan.project import Project
@@ -127,9 +153,11 @@ JOBS: dict[str, Callable[[Path, Path], None]] = {
     "mesh": run_mesh,
     "merge": run_merge,
     "export": run_export,
+    "measure": run_measure,
+    "simulate": run_simulate,
 }
 
-ON_A_SCAN = ("again", "pages", "mesh")
+ON_A_SCAN = ("again", "pages", "mesh", "measure")
 """Those that begin in a folder that holds a finished scan."""
 
 
@@ -180,7 +208,7 @@ def contents(root: Path) -> dict[str, object]:
 
 
 def _without_times(file: Path) -> object:
-    if file.name == "stage.json":
+    if file.name.endswith("stage.json"):
         note = json.loads(file.read_text("utf-8"))
         # What the report says of the times stands in its checksums, too.
         names = set(note["files"]) if file.parent.name == "report" else note["files"]
@@ -202,7 +230,7 @@ def begin_in(folder: Path, out: Path) -> None:
 
 def main() -> None:
     folder, job, moments = Path(sys.argv[1]), JOBS[sys.argv[2]], sys.argv[3:]
-    for module in ("survey.scan", "survey.merge", "survey.export"):
+    for module in ("survey.scan", "survey.merge", "survey.export", "survey.measure"):
         __import__(f"murkscan.{module}")
     in_a_child(lambda: make_inputs(folder))
     want, out = folder / f"want-{sys.argv[2]}", folder / f"out-{sys.argv[2]}"

@@ -194,8 +194,8 @@ def _disagreement(summary: MergedSummary) -> list[Block]:
         (
             " and ".join(summary.passes[n].name for n in (one.first, one.second)),
             100 * one.share,
-            *(1e3 * length for length in (one.mean, one.rms, one.within_95)),
-            None if one.stated is None else 1e3 * AT_95 * one.stated,
+            *(_as_mm(length) for length in (one.mean, one.rms, one.within_95)),
+            None if one.stated is None else _as_mm(AT_95 * one.stated),
         )
         for one in summary.pairs
     ]
@@ -203,6 +203,11 @@ def _disagreement(summary: MergedSummary) -> list[Block]:
         "passes", "both saw [%]", "mean [mm]", "RMS [mm]", "95 % within [mm]", "stated, 95 % [mm]",
     )  # fmt: skip
     return [Note(_APART), Table(rows, head)]
+
+
+def _as_mm(length: float) -> float:
+    """Write a length in millimetres, to a tenth of a micrometre."""
+    return round(1e3 * length, 4)
 
 
 def _uncertainty(summary: MergedSummary) -> list[Block]:

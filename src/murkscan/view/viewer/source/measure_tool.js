@@ -37,7 +37,7 @@ export function measureTool(app) {
       }));
     if (off !== null) {
       item.append(make("small", {
-        textContent: shared === null ? "The rig states no uncertainty of its calibration: it is not in it."
+        textContent: shared === null ? "What points share, by calibration and alignment, is not in it: murkscan measure distance tells."
           : `The calibration's part of it: ± ${length(shared)}.`,
       }));
     }
