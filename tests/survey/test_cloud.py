@@ -28,6 +28,7 @@ from murkscan.project import (
     find_frame_times,
     find_trajectory,
 )
+from murkscan.project.merged import load_merged_errors
 from murkscan.survey.cloud import build_cloud
 from murkscan.survey.export import export_cloud
 from murkscan.survey.merge import merge_passes
@@ -232,6 +233,13 @@ def test_a_merge_is_made_anew_when_a_pass_has_changed_and_not_before(project, tm
     as_project(tmp_path / "second", drifted(cloud, seed=1)[0])
     merge_passes(paths, out)
     assert (out / "cloud/cloud.ply").stat().st_mtime_ns > made
+    # Stopped between the record of the passes and their cloud, it is no cloud of theirs.
+    record = Project(out).load_scan()
+    Project(out).save_scan(replace(record, passes=record.passes[:1]))
+    with pytest.raises(MissingResult, match="and not finished"):
+        load_merged_errors(Project(out))
+    merge_passes(paths, out)
+    assert len(load_merged_errors(Project(out)).passes) == 2
 
 
 def followed(project, attitude):

@@ -18,13 +18,20 @@ def load_passes(project: Project) -> tuple[PassRecord, ...]:
     """Read the passes of a merged cloud.
 
     Raises:
-        MissingResult: It was merged by a version that kept too little of them.
+        MissingResult: It was merged by a version that kept too little of them, or another merge
+            was begun in its folder.
     """
     passes = project.load_scan().passes
     if not passes:
         raise MissingResult(
             f"{project.root} was merged by an earlier version of murkscan, which kept nothing of "
             "its passes' rigs; run `murkscan merge` again."
+        )
+    made_of = project.finished(CLOUD).record.key.inputs.get("passes")
+    if made_of != [one.identity for one in passes]:
+        raise MissingResult(
+            f"A merge of other passes was begun in {project.root} and not finished; run "
+            "`murkscan merge` again."
         )
     return passes
 
