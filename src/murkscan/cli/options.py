@@ -188,7 +188,7 @@ class MotionFlags:
 
     def _follow(self, log: Path, rig: "Rig", along: 'Literal["x", "y", "z"]') -> "AbstractMotion":
         """Follow a log of measurements, and say how it was understood."""
-        from ..survey.navigated import follow_navigation
+        from ..motion.navigated import follow_navigation
 
         motion, said = follow_navigation(
             log,

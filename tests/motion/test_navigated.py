@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from murkscan.errors import InputError
 from murkscan.motion import ConstantSpeed, PoseLog
-from murkscan.survey.navigated import follow_navigation
+from murkscan.motion.navigated import follow_navigation
 from murkscan.types.pose import Pose
 
 from ..scenes import air_rig

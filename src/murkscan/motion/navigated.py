@@ -6,12 +6,14 @@ import numpy as np
 
 from ..errors import InputError
 from ..io.navigation_log import NavigationLog, read_navigation_log
-from ..motion import AbstractMotion, ConstantSpeed, Direction, PoseLog
-from ..motion.reckon import reckon
 from ..types.pose import Pose
 from ..types.rig import Rig
 from ..types.trajectory import Trajectory
 from ..types.water import Water
+from .base import AbstractMotion, Direction
+from .constant_speed import ConstantSpeed
+from .pose_log import PoseLog
+from .reckon import reckon
 
 
 def follow_navigation(
