@@ -65,7 +65,7 @@ def deviation(
     print_measurement(out, name, found, suffixes=("ply", "csv"))
     kinds = ("front", "isometric", "histogram")
     tell("pictures", *(str(out / "measure" / f"{name}-{kind}.png") for kind in kinds))
-    tell("next", f"murkscan view {quote(str(out))} colours the page by it: {name}")
+    tell("next", f"murkscan view {quote(str(out))} --deviation {name}: its page, coloured by this")
 
 
 def dents(

@@ -30,7 +30,8 @@ _FARTHEST = 1e8
 """Distance from the origin beyond which a place is none [m]."""
 
 _MEANING = (
-    'in 95 of 100 scans the truth lies within value ± 95%; "own" is the points\' noise, which more '
+    "in 95 of 100 scans the truth lies within value ± 95%; 1σ is a standard deviation, a bit over "
+    'half of that: "own" is the points\' noise, which more '
     'points lessen, "common" is what all points share, such as the calibration\'s error'
 )
 

@@ -11,6 +11,11 @@ from .paths import RigFile
 from .progress import progress_bars
 from .words import print_table, say, tell
 
+_MEANING = (
+    "σ is one standard deviation: along the ray by the picture's noise and by speckle, across it "
+    "by the width of a scan line, common by the calibration, which all points share"
+)
+
 if TYPE_CHECKING:
     from ..survey.plan import Plan
 
@@ -152,5 +157,6 @@ def _print(made: "Plan", out: Path) -> None:
     print_table("What this rig will see (σ and spacing in mm)", made.head, made.rows)
     for sentence in made.sentences:
         say(sentence)
+    tell("meaning", _MEANING)
     tell("made", f"{out / 'index.html'}, with charts; {out / 'plan.json'}, the numbers")
     tell("next", "open the page; try other flags, then write the rig file of what you will build")

@@ -24,7 +24,7 @@ from ..plan.placement import present_place
 from ..types.rig import Rig
 
 _NUM_ROWS = 8
-_HEAD = ("z [m]", "in view", "found", "σ noise", "σ speckle", "σ across", "σ common", "spacing")
+_HEAD = ("z [m]", "in view %", "found %", "σ noise", "σ speckle", "σ across", "σ common", "spacing")
 """The last five in millimetres."""
 
 
@@ -126,8 +126,8 @@ def _rows(shown: Forecast) -> list[tuple[str, ...]]:
     return [
         (
             f"{depth:.2f}",
-            f"{in_view:.0%}",
-            f"{found:.0%}",
+            f"{100 * in_view:.0f}",
+            f"{100 * found:.0f}",
             *("–" if math.isnan(value) else f"{value:.2g}" for value in values),
         )
         for depth, in_view, found, *values in zip(
@@ -172,6 +172,10 @@ def _numbers(
     }
 
 
+def _as_cell(text: str) -> float | None:
+    return None if text == "–" else float(text)
+
+
 def _page(made: Plan) -> str:
     """Show the plan."""
     nearest, farthest = made.seen.reach
@@ -182,6 +186,7 @@ def _page(made: Plan) -> str:
         ]
     )
     notes = [Note(sentence) for sentence in made.sentences]
+    rows = [[_as_cell(text) for text in row] for row in made.rows]
     about = Note(
         "A plain wall that faces the camera at z in front of it; σ and spacing in millimetres. σ "
         "noise is that of a point along its ray, the least that the noise of one scan line allows; "
@@ -195,6 +200,6 @@ def _page(made: Plan) -> str:
         [
             Section("", [facts, *notes]),
             Section("Against distance", [sigma_chart(made.seen), bound_chart(made.seen)]),
-            Section("Numbers", [Table(made.rows, made.head), about]),
+            Section("Numbers", [Table(rows, made.head), about]),
         ],
     )
