@@ -153,7 +153,7 @@ def judge(job: Job, count: int, folder: Path) -> list[Figure]:
 
 def judge_blade(merged: Path, ship: Mesh, folder: Path) -> list[Figure]:
     """Compare the tip's deviation from the drawing with the true one, and look at all else."""
-    points, deviations = load_deviation_ply(merged / "measure" / "deviation.ply")
+    points, deviations, _ = load_deviation_ply(merged / "measure" / "deviation.ply")
     known = np.isfinite(deviations)
     points, deviations = points[known], deviations[known]
     is_tip = is_bent_blade(points) & (np.hypot(*(points[:, 1:] - HUB).T) > TIP_FROM)

@@ -8,7 +8,7 @@ import pytest
 from murkscan.errors import InputError
 from murkscan.extract import AbstractExtractor, GrayGravity, check_stripes, require_extractor
 from murkscan.types.frame import Frame
-from murkscan.types.stripe import Stripe, empty_stripe
+from murkscan.types.stripe import Stripe
 
 SIZE = (40, 30)
 FRAMES = [Frame(np.zeros((30, 40), np.uint8), index=index, time=index / 10) for index in (3, 4)]
@@ -32,7 +32,7 @@ def check(stripes):
 
 
 def test_sound_stripes_pass_as_they_are():
-    given = [stripe(FRAMES[0]), empty_stripe()]
+    given = [stripe(FRAMES[0]), Stripe.empty()]
     passed = check(given)
     assert [len(one) for one in passed] == [5, 0]
     np.testing.assert_array_equal(passed[0].pixels, given[0].pixels)
@@ -52,13 +52,13 @@ def test_sound_stripes_pass_as_they_are():
 )
 def test_what_cannot_be_is_refused(change, says):
     with pytest.raises(InputError, match=f"GrayGravity: what it gave for frame 3 .*{says}"):
-        check([replace(stripe(FRAMES[0]), **change), empty_stripe()])
+        check([replace(stripe(FRAMES[0]), **change), Stripe.empty()])
 
 
 @pytest.mark.parametrize(("count", "says"), [(0, "gave 0"), (1, "gave 1"), (3, "gave more")])
 def test_it_gives_one_stripe_a_frame(count, says):
     with pytest.raises(InputError, match=says):
-        check([empty_stripe()] * count)
+        check([Stripe.empty()] * count)
 
 
 class Plain(AbstractExtractor):

@@ -9,13 +9,13 @@ import pytest
 from murkscan.errors import DeviceError, FormatError
 from murkscan.io.atomic import replacing
 from murkscan.io.parquet import load_profile, load_stripe, save_profile, save_stripe
-from murkscan.types.profile import Profile, empty_profile
-from murkscan.types.stripe import Stripe, empty_stripe
+from murkscan.types.profile import Profile
+from murkscan.types.stripe import Stripe
 
 
 def _fill(kind, n):
     rng = np.random.default_rng(n)
-    empty = empty_stripe() if kind is Stripe else empty_profile()
+    empty = Stripe.empty() if kind is Stripe else Profile.empty()
     columns = (getattr(empty, field.name) for field in fields(kind))
     return kind(
         *((rng.random((n, *column.shape[1:])) * 200).astype(column.dtype) for column in columns)

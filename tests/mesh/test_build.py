@@ -30,7 +30,7 @@ def test_a_surface_is_coloured_and_open_unless_told(project):
     result = build_mesh(project, GridMesh())
     assert (result.holes_closed, result.holes_left, result.faces_filled) == (None, None, None)
     made = {file.name for file in (project.root / "mesh").iterdir()}
-    assert made == {"mesh.ply", "mesh.stl", "mesh.glb", "stage.json"}
+    assert made == {"mesh.ply", "mesh.stl", "mesh.glb", "points.parquet", "stage.json"}
     assert project.load_mesh().colours is not None
     assert project.load_mesh().filled is None
 

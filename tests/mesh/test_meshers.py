@@ -2,12 +2,13 @@
 
 import importlib.util
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
 
 from murkscan.errors import Degenerate, InputError, MissingDependency
-from murkscan.mesh import GridMesh, Poisson
+from murkscan.mesh import GridMesh, Poisson, join_tiles
 
 from ..scans import cylinder, holed, plane, scan_cloud, sphere, step
 
@@ -209,3 +210,21 @@ def test_settings_without_sense_are_refused():
 def test_poisson_names_the_extra_that_it_needs():
     with pytest.raises(MissingDependency, match=r'pip install "murkscan\[mesh\]"'):
         Poisson().mesh(scan_cloud(plane, spacing=0.01))
+
+
+def test_tiles_make_the_surface_that_the_whole_makes():
+    """Each sees twelve profiles beside its own: points are evened out over eight."""
+    cloud = scan_cloud(sphere, noise=1e-4)
+    whole = GridMesh().mesh(cloud)
+    edges = np.searchsorted(cloud.frame, [0, 37, 80, 120])
+
+    def tile(low, high):
+        first = np.searchsorted(cloud.frame, cloud.frame[low] - 12)
+        last = np.searchsorted(cloud.frame, cloud.frame[high - 1] + 13)
+        return GridMesh().mesh_tile(cloud[first:last], slice(low - first, high - first))
+
+    joined = join_tiles([tile(low, high) for low, high in pairwise(edges.tolist())])
+    np.testing.assert_array_equal(joined.points, whole.points)
+    np.testing.assert_allclose(joined.vertices, whole.vertices, atol=1e-12)
+    corners = [np.unique(np.sort(mesh.faces, axis=1), axis=0) for mesh in (joined, whole)]
+    np.testing.assert_array_equal(*corners)

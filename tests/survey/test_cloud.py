@@ -11,7 +11,6 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from murkscan.cli.main import run
-from murkscan.cloud.blocks import cut_blocks
 from murkscan.errors import Degenerate, FormatError, InputError, MissingResult, NotEnoughData
 from murkscan.io.cloud_files import load_cloud_file, writing_cloud_file
 from murkscan.project import (
@@ -28,14 +27,14 @@ from murkscan.project import (
     find_frame_times,
     find_trajectory,
 )
+from murkscan.project.blocks import cut_blocks
 from murkscan.project.merged import load_merged_errors
 from murkscan.survey.cloud import build_cloud
 from murkscan.survey.export import export_cloud
 from murkscan.survey.merge import merge_passes
 from murkscan.survey.mesh import export_mesh
 from murkscan.types.pose import Pose
-from murkscan.types.profile import Profile
-from murkscan.types.stripe import empty_stripe
+from murkscan.types.stripe import Stripe
 from murkscan.types.trajectory import Trajectory
 
 from ..projects import SCAN, finish, save_cloud
@@ -122,15 +121,19 @@ def test_a_scan_without_a_point_is_an_empty_cloud(tmp_path):
     assert (result.points, len(Project(tmp_path).load_cloud())) == (0, 0)
 
 
-def test_blocks_hold_every_frame_once():
-    profile, _ = scan(plane)
-    parts = [profile[profile.frame == number] for number in range(120)]
-    for size in (1, 500, 10_000, 10**9):
-        blocks = list(cut_blocks(parts, block=size))
-        bodies = [block.profile[block.is_body] for block in blocks]
-        np.testing.assert_array_equal(Profile.concatenate(bodies).points, profile.points)
-        assert all(len(block.profile) == len(block.is_body) for block in blocks)
+def test_blocks_hold_every_part_once_and_see_what_lies_beside_them():
+    sizes = {number: 900 + 10 * number for number in range(0, 240, 2)}
+    for size in (1, 5000, 10**6, 10**9):
+        blocks = cut_blocks(sizes, block=size)
+        assert [number for block in blocks for number in block.parts] == list(sizes)
+        for block in blocks:
+            joined = [*block.before, *block.parts, *block.after]
+            first = list(sizes).index(joined[0])
+            assert joined == list(sizes)[first : first + len(joined)]
+            assert block.before or block.parts[0] == 0
+            assert block.after or block.parts[-1] == 238
     assert len(blocks) == 1
+    assert cut_blocks({}) == []
 
 
 def test_an_export_holds_the_cloud(project, tmp_path, cloud):
@@ -251,7 +254,7 @@ def followed(project, attitude):
         project,
         EXTRACT,
         ExtractResult(0, len(frames), 0, 0, len(cloud)),
-        make=lambda: project.save_stripe_part(0, empty_stripe(), note),
+        make=lambda: project.save_stripe_part(0, Stripe.empty(), note),
     )
     count = len(frames)
     positions = np.stack([frames * 1e-3, np.zeros(count), np.zeros(count)], axis=1)

@@ -9,11 +9,17 @@ import murkscan as ms
 from murkscan.cli.main import run
 from murkscan.distribute import Dask, Processes, Serial, Threads
 from murkscan.io.images import write_image
+from murkscan.survey.cloud import build_cloud
+from murkscan.survey.export import export_cloud
 from murkscan.survey.extract import extract_recording
+from murkscan.survey.mesh import build_mesh
 from murkscan.survey.scan import begin_scan
 from murkscan.survey.triangulate import triangulate_stripes
 
 from ..mutants import RIG
+from ..scans import plane, scan
+from ..scenes import air_rig
+from .test_cloud import scanned
 
 NUM = 1200
 LOST = [*range(3), *range(505, 600), *range(1100, 1200)]
@@ -81,3 +87,32 @@ def test_flags_that_mean_nothing_together_are_refused_at_once(recorded, tmp_path
     words = ["scan", str(recorded / "frames"), "--rig", str(recorded / "rig.toml")]
     assert run([*words, "--step-mm", "1", *flags, "--out", str(tmp_path / "out")]) == 2
     assert not (tmp_path / "out").exists()
+
+
+def made_by(root, executor):
+    """A cloud, its surface and an export, in four blocks."""
+    profile, trajectory = scan(plane)
+    project = scanned(root / "out", profile, trajectory, parts=12)
+    build_cloud(project, air_rig(axis="x"), block=6000, executor=executor)
+    build_mesh(project, ms.GridMesh(), block=6000, executor=executor)
+    export_cloud(project, root / "dive.csv", executor=executor)
+    return root
+
+
+@pytest.fixture(scope="module")
+def by_one(tmp_path_factory):
+    return made_by(tmp_path_factory.mktemp("one"), Serial())
+
+
+@pytest.mark.parametrize(
+    "executor", [Threads(2), Processes(1), Dask(workers=1)], ids=lambda one: type(one).__name__
+)
+def test_cloud_surface_and_export_are_the_same_to_the_byte(by_one, tmp_path, executor):
+    if isinstance(executor, Dask):
+        pytest.importorskip("distributed", reason="the extra [cluster] is not installed")
+    made_by(tmp_path, executor)
+    made = [file.relative_to(by_one) for file in sorted(by_one.rglob("*")) if file.is_file()]
+    made = [name for name in made if name.name != "stage.json"]
+    assert sum(name.parts[:2] == ("out", "mesh") for name in made) == 4
+    _, *different = filecmp.cmpfiles(by_one, tmp_path, made, shallow=False)
+    assert different == [[], []]

@@ -33,7 +33,7 @@ from murkscan.types.laser import Laser
 from murkscan.types.pose import Pose
 from murkscan.types.rig import Rig
 from murkscan.types.rig_covariance import RigCovariance
-from murkscan.types.stripe import empty_stripe
+from murkscan.types.stripe import Stripe
 
 from ..geometry.test_alignment import sample, waves
 from ..projects import SCAN, finish
@@ -120,7 +120,7 @@ def scanned(root, rig, *, spacing, back):
     project.save_scan(replace(SCAN, rig=as_tables(RIG)))
     extract = finish(
         project, EXTRACT, ExtractResult(0, len(frames), 0, 0, len(profile)),
-        make=lambda: project.save_stripe_part(0, empty_stripe(), note),
+        make=lambda: project.save_stripe_part(0, Stripe.empty(), note),
     )  # fmt: skip
     inputs, result = {"extract": extract.digest}, TriangulateResult(len(profile), dropped=0)
     finish(

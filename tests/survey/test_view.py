@@ -66,9 +66,11 @@ def measure_deviation(project, cloud, *, name="deviation", of=None):
     values = np.where(cloud.points[:, 1] > 0, 1e-3, np.nan)
     deviation = Deviation(values, np.zeros_like(cloud.points), np.zeros(len(cloud)))
 
+    rows, sigma = np.arange(len(cloud)), np.zeros(len(cloud))
+
     def save():
         with measurement_files(project, name).making(f"{name}.ply") as path:
-            save_deviation_ply(path, cloud.points, deviation, np.zeros(len(cloud)))
+            save_deviation_ply(path, cloud.points, deviation, sigma, rows)
 
     inputs = {"cloud": of or project.finished(CLOUD).digest}
     finish(project, MEASURE, MeasureResult("deviation"), inputs=inputs, make=save, label=name)

@@ -3,6 +3,7 @@
 import hashlib
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,6 @@ import murkscan.view
 from murkscan.errors import InputError, NotEnoughData
 from murkscan.mesh import GridMesh
 from murkscan.types.frame_times import FrameTimes
-from murkscan.types.mesh import Mesh
 from murkscan.types.pose import Pose
 from murkscan.view import Layer, model_of_points, model_of_scan, render_viewer
 from murkscan.view.thinned import choose_fairly, cluster_vertices
@@ -42,11 +42,11 @@ def test_a_surface_between_measured_points_adds_none(cloud):
 
 def test_a_surface_beside_the_points_keeps_its_own_vertices(cloud):
     mesh = GridMesh().mesh(cloud)
-    moved = Mesh(mesh.vertices + np.array([0, 0, 1e-5]), mesh.faces)
+    moved = replace(mesh, vertices=mesh.vertices + np.array([0, 0, 1e-5]))
     model = model_of_scan("plane", cloud, mesh=moved)
     assert model.num_measured == len(cloud)
     np.testing.assert_array_equal(model.vertices[model.faces], moved.vertices[moved.faces])
-    # What is known of the nearest point is known of the vertex.
+    # What is known of its own point is known of the vertex.
     frames = np.unique(cloud.frame, return_inverse=True)[1]
     np.testing.assert_array_equal(model.moments[: len(cloud)], frames)
     np.testing.assert_array_equal(np.unique(model.moments), np.unique(frames))
@@ -68,7 +68,7 @@ def test_a_smoothed_surface_is_drawn_as_it_is_and_read_off_its_points():
 def test_a_vertex_beyond_a_point_s_sigma_is_another_place():
     cloud = scan_cloud(plane, spacing=2e-3, num_rows=80, noise=2e-4)
     mesh = GridMesh(smoothing=0.0).mesh(cloud)
-    lifted = Mesh(mesh.vertices - np.array([0, 0, 3e-4]), mesh.faces)
+    lifted = replace(mesh, vertices=mesh.vertices - np.array([0, 0, 3e-4]))
     model = model_of_scan("plane", cloud, mesh=lifted)
     assert len(model.vertices) == len(cloud) + len(mesh.vertices)
     np.testing.assert_array_equal(model.surface[model.faces], lifted.vertices[lifted.faces])
@@ -124,14 +124,25 @@ def test_a_model_moves_as_a_whole():
     )
 
 
-def test_a_layer_from_other_places_reaches_the_nearest_vertices_only():
-    points = np.stack([np.linspace(0, 1, 101), np.zeros(101), np.zeros(101)], axis=1)
-    half = points[:51]
-    model = model_of_points("line", points)
-    deviation = Layer("deviation", half[:, 0], "mm", "coolwarm", is_signed=True)
-    carried = model.with_layer(deviation, at=half).layers[-1].values
-    np.testing.assert_array_equal(carried[:51], half[:, 0])
-    assert np.isnan(carried[70:]).all()
+def test_a_layer_of_some_points_reaches_their_vertices_wherever_they_lie(cloud):
+    """Also those of a thinned surface, whose points are none of the chosen ones."""
+    rows = np.flatnonzero(cloud.points[:, 1] > 0)
+    mesh = GridMesh().mesh(cloud)
+    model = model_of_scan("plane", cloud, mesh=mesh, most=500)
+    assert model.num_measured < len(model.vertices)
+    carried = model.with_layer(Layer("row", rows.astype(float), ""), rows).layers[-1].values
+    upper = np.isin(model.rows, rows)
+    np.testing.assert_array_equal(carried[upper], model.rows[upper])
+    assert np.isnan(carried[~upper]).all()
+    np.testing.assert_array_equal(upper, cloud.points[model.rows, 1] > 0)
+
+
+def test_a_surface_of_other_points_is_refused(cloud):
+    mesh = GridMesh().mesh(cloud)
+    with pytest.raises(InputError, match="which points its vertices are"):
+        model_of_scan("plane", cloud, mesh=replace(mesh, points=None))
+    with pytest.raises(InputError, match="lacks points"):
+        model_of_scan("plane", cloud[:50], mesh=mesh)
 
 
 def test_a_layer_of_another_length_is_refused():

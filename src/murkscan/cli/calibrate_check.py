@@ -143,5 +143,6 @@ def _print_scan(result: "ScanCheckResult") -> None:
     common = f"{1e3 * length.sigma_common:.3f} mm" if result.is_common_known else "unknown"
     say(
         f"Length {1e3 * length.value:.3f} mm; ± {1e3 * length.sigma_independent:.3f} mm by the "
-        f"noise of its ends, ± {common} by the rig's covariance (1σ)."
+        f"noise of its ends, ± {common} by what is stated of the rig and "
+        "of the motion (1σ)."
     )

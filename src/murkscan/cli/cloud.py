@@ -7,7 +7,7 @@ from cyclopts import Parameter
 
 from ..errors import InputError
 from ..ui.choices import make_rules
-from .options import MaybePlace
+from .options import ExecutorFlags, MaybePlace
 from .paths import ScanFolder
 from .progress import progress_bars
 from .typed import WORDS
@@ -21,6 +21,7 @@ def cloud(
     min_posterior: float = 0.5,
     volume_m: MaybePlace = None,
     frames: Annotated[bool, Parameter(negative=())] = False,
+    work: ExecutorFlags = ExecutorFlags(),
 ) -> None:
     """Merge the profiles of a scan into one cloud of points.
 
@@ -45,6 +46,7 @@ def cloud(
         raise InputError("--voxel-mm thins what is exported; say where to with --export FILE.")
     if voxel_mm is not None and not 0 < voxel_mm < float("inf"):
         raise InputError(f"--voxel-mm must be above 0, got {voxel_mm:g}.")
+    executor = work.make()
     from ..project import CLOUD, Project, is_merged, load_scan_rig
     from ..survey.cloud import build_cloud
     from ..survey.export import check_export, export_cloud
@@ -59,9 +61,14 @@ def cloud(
             result = project.finished(CLOUD).result
         else:
             rig = load_scan_rig(project)
-            result = build_cloud(project, rig, rules=rules, frames=frames, progress=progress)
+            result = build_cloud(
+                project, rig, rules=rules, frames=frames, executor=executor, progress=progress
+            )
         voxel = None if voxel_mm is None else voxel_mm / 1e3
-        written = [export_cloud(project, path, voxel=voxel, progress=progress) for path in export]
+        written = [
+            export_cloud(project, path, voxel=voxel, executor=executor, progress=progress)
+            for path in export
+        ]
     for path, count in zip(export, written, strict=True):
         tell("exported", f"{count:,} points: {path}")
     print_result("cloud", result, out / "cloud" / "cloud.ply", out=out)

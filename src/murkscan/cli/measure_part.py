@@ -119,17 +119,14 @@ def print_measurement(
 def _tell_common(out: Path, found: "Measurement") -> None:
     """Say what the common part lacks."""
     from ..project import Project, is_merged
+    from ..project.merged import list_unstated
+    from ..survey.common_part import list_unstated as list_unstated_of_scan
 
     project = Project(out)
     if not is_merged(project):
-        if any(quantity.sigma_common is None for quantity in found.quantities):
-            say(
-                "The rig file states no covariance: the common part is unknown, and not in ±95%; "
-                "murkscan calibrate finds it."
-            )
+        for text in list_unstated_of_scan(project):
+            say(text)
         return
-    from ..project.merged import list_unstated
-
     if unstated := list_unstated(project):
         say(
             f"Of {', '.join(unstated)} no rig with a covariance is known: the common part is that "

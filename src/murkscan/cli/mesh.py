@@ -7,7 +7,7 @@ from cyclopts import Parameter
 
 from ..errors import InputError
 from ..ui.choices import MesherName, check_settings, make_mesher
-from .options import Settings
+from .options import ExecutorFlags, Settings
 from .paths import ScanFolder
 from .progress import progress_bars
 from .typed import WORDS
@@ -22,6 +22,7 @@ def mesh(
     faces: int | None = None,
     colour: Literal["depth", "signal", "none"] = "depth",
     export: Annotated[tuple[Path, ...], Parameter(negative=())] = (),
+    work: ExecutorFlags = ExecutorFlags(),
 ) -> None:
     """Make a surface from the cloud of a scan.
 
@@ -47,6 +48,7 @@ def mesh(
     if faces is not None and faces < 4:
         raise InputError(f"--faces must be 4 or more, got {faces}.")
     check_settings(settings)
+    executor = work.make()
     from ..mesh import ByDepth, BySignal
     from ..project import Project
     from ..survey.mesh import Finish, build_mesh, check_mesh_export, export_mesh
@@ -63,7 +65,7 @@ def mesh(
     chosen = make_mesher(mesher, settings)
     project = Project(out, WORDS.get())
     with progress_bars() as progress:
-        result = build_mesh(project, chosen, finish=finish, progress=progress)
+        result = build_mesh(project, chosen, finish=finish, executor=executor, progress=progress)
         written = [export_mesh(project, path) for path in export]
     for path, count in zip(export, written, strict=True):
         tell("exported", f"{count:,} triangles: {path}")

@@ -13,6 +13,8 @@ from .paths import MaybeLogPath
 from .words import tell
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from ..capture import AbstractRecording
     from ..distribute import AbstractExecutor
     from ..motion import AbstractMotion
@@ -109,6 +111,9 @@ class MotionFlags:
     """System in which latitude and longitude become metres, as EPSG:32632; else UTM's zone."""
     along: Literal["x", "y", "z"] | None = None
     """Camera axis of a constant speed or step; the laser's axis unless said."""
+    speed_sigma_percent: float | None = None
+    """Standard deviation of the speed or the step [%]; unless said, speed_percent of the rig file's
+    [navigation], else 10 of a speed and 1 of a step."""
     start_time: str = "0"
     """When the video began, by the log's clock: seconds, or ISO 8601."""
     time_offset_s: float = 0.0
@@ -159,12 +164,15 @@ class MotionFlags:
         self.check(recording)
         along = self.along or rig.laser(laser).axis
         log = self._find_log(recording)
+        stated = None if rig.navigation is None else rig.navigation.speed
+        sigma = stated if self.speed_sigma_percent is None else self.speed_sigma_percent / 100
+        known = {} if sigma is None else {"sigma": sigma}
         if log is not None:
-            return self._follow(log, rig, along)
+            return self._follow(log, rig, along, known)
         if self.speed_mm_s is not None:
-            return ConstantSpeed(self.speed_mm_s / 1e3, along)
+            return ConstantSpeed(self.speed_mm_s / 1e3, along, **known)
         if self.step_mm is not None:
-            return ConstantStep(self.step_mm / 1e3, along)
+            return ConstantStep(self.step_mm / 1e3, along, **known)
         assert self.poses is not None
         mount = rig.vehicle_from_camera or Pose.identity()
         return PoseLog(
@@ -173,6 +181,7 @@ class MotionFlags:
             read_start_time(self.start_time),
             self.time_offset_s,
             self.gap_s,
+            stated=rig.navigation,
             name=str(self.poses),
         )
 
@@ -186,7 +195,13 @@ class MotionFlags:
 
         return recording if recording is not None and is_dive(recording) else None
 
-    def _follow(self, log: Path, rig: "Rig", along: 'Literal["x", "y", "z"]') -> "AbstractMotion":
+    def _follow(
+        self,
+        log: Path,
+        rig: "Rig",
+        along: 'Literal["x", "y", "z"]',
+        known: "Mapping[str, float]",
+    ) -> "AbstractMotion":
         """Follow a log of measurements, and say how it was understood."""
         from ..motion.navigated import follow_navigation
 
@@ -195,6 +210,7 @@ class MotionFlags:
             rig,
             speed=None if self.speed_mm_s is None else self.speed_mm_s / 1e3,
             along=along,
+            **known,
             crs=self.crs,
             start_time=read_start_time(self.start_time),
             time_offset=self.time_offset_s,
@@ -225,5 +241,8 @@ class MotionFlags:
             if getattr(self, name) != _OF_LOGS.get(name):
                 flag = f"--{name.replace('_', '-')}"
                 raise InputError(f"{flag} goes with --poses; leave it out.")
-        if (self.poses or (log and self.speed_mm_s is None)) and self.along is not None:
-            raise InputError("--along goes with --speed-mm-s or --step-mm; leave it out.")
+        for name in ("along", "speed_sigma_percent"):
+            is_idle = self.poses or (log and self.speed_mm_s is None)
+            if is_idle and getattr(self, name) is not None:
+                flag = f"--{name.replace('_', '-')}"
+                raise InputError(f"{flag} goes with --speed-mm-s or --step-mm; leave it out.")

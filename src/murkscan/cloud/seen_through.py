@@ -15,11 +15,14 @@ from jaxtyping import Int
 from ..errors import InputError
 from ..geometry.grid import NONE, ScanGrid
 from ..geometry.ray_casting import RayCaster
-from ..types.arrays import Faces, Mask
+from ..types.arrays import Faces, Indices, Mask
 from ..types.mesh import Mesh
 from ..types.rays import Rays
 from .base import AbstractOutlierRule, SeenCloud
 from .pieces import number_pieces
+
+Pierced = tuple[Int[np.ndarray, " pairs"], Int[np.ndarray, " pairs"]]
+"""Rays, and the patch that each of them pierces."""
 
 _SIGMAS = 4.0
 """Standard deviations that a ray may end behind a patch and still be of it."""
@@ -29,6 +32,8 @@ _PIERCED = 0.25
 """Share of the patches of a piece that rays must have pierced. A cell of the grid has two patches
 and is met by one ray, so it is about half of them where the whole piece is false; where poses or a
 rig are millimetres off, rays pierce a true piece, too, but along its edges only."""
+_RAYS = 50_000
+"""Rays that are cast together: what lies between takes 10 MB."""
 _BEHIND = 0.5
 """Share of the points of a piece that must lie behind larger pieces."""
 
@@ -77,21 +82,27 @@ class SeenThrough(AbstractOutlierRule):
         is_false_piece = (pierced > _PIERCED * patches) | (behind > _BEHIND * size)
         return is_false_piece[piece]
 
-    def _pierce(
-        self, seen: SeenCloud, faces: Faces
-    ) -> tuple[Int[np.ndarray, " rays"], Int[np.ndarray, " rays"]]:
+    def _pierce(self, seen: SeenCloud, faces: Faces) -> Pierced:
         """Give which rays pierce which patches clearly in front of their end."""
         caster = RayCaster(Mesh(seen.cloud.points, faces))
-        between = seen.cloud.points - seen.cameras
+        found = [
+            self._pierce_by(caster, seen, np.arange(start, min(start + _RAYS, len(seen.cloud))))
+            for start in range(0, len(seen.cloud), _RAYS)
+        ]
+        rays, pierced = zip(*found, strict=True)
+        return np.concatenate(rays), np.concatenate(pierced)
+
+    def _pierce_by(self, caster: RayCaster, seen: SeenCloud, which: Indices) -> Pierced:
+        between = seen.cloud.points[which] - seen.cameras[which]
         lengths = np.linalg.norm(between, axis=1)
-        rays = Rays(seen.cameras, between / np.maximum(lengths, 1e-12)[:, None])
+        rays = Rays(seen.cameras[which], between / np.maximum(lengths, 1e-12)[:, None])
         hits = caster.first_hits(rays)
-        room = self.clearance * lengths + _SIGMAS * np.nan_to_num(seen.cloud.sigma)
+        room = self.clearance * lengths + _SIGMAS * np.nan_to_num(seen.cloud.sigma[which])
         ray = np.flatnonzero(hits.is_hit & (hits.range < lengths - room))
         face = hits.face[ray]
         facing = np.einsum("ij,ij->i", rays.directions[ray], caster.normals[face])
         pierced = np.abs(facing) > _FACING
-        return ray[pierced], face[pierced]
+        return which[ray[pierced]], face[pierced]
 
 
 def _patches(grid: ScanGrid) -> Faces:

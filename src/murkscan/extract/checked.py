@@ -2,13 +2,12 @@
 
 import dataclasses
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Any
 
 import numpy as np
 
 from ..errors import InputError
 from ..types.frame import Frame
-from ..types.stripe import Stripe, empty_stripe
+from ..types.stripe import Stripe
 from .base import AbstractExtractor
 
 _MISCOUNTED = (
@@ -17,8 +16,6 @@ _MISCOUNTED = (
 )
 _EDGE = 0.5
 """How far a pixel reaches from its centre [px]."""
-_EMPTY = empty_stripe()
-"""What the columns are like."""
 
 
 def require_extractor(extractor: AbstractExtractor) -> None:
@@ -52,7 +49,7 @@ def check_stripes(
         laser: Number of the laser whose stripe was looked for.
 
     Yields:
-        The same, in the types that tables keep.
+        The same.
 
     Raises:
         InputError: One of them cannot be; the message names the extractor, the frame and the fault.
@@ -67,19 +64,15 @@ def check_stripes(
             fault = _find_fault(stripe, frame, size, laser)
         if fault:
             raise InputError(f"{name}: what it gave for frame {frame.index} {fault}.")
-        yield _as_kept(stripe)
+        yield stripe
     if next(given, None) is not None:
         raise InputError(_MISCOUNTED.format(name=name, frames=len(frames), given="more"))
 
 
 def _find_fault(stripe: Stripe, frame: Frame, size: tuple[int, int], laser: int) -> str:
     """Say in half a sentence why a stripe cannot be; nothing where it can."""
-    count = len(stripe.frame)
-    columns = {f.name: np.asarray(getattr(stripe, f.name)) for f in dataclasses.fields(stripe)}
+    columns = {f.name: getattr(stripe, f.name) for f in dataclasses.fields(stripe)}
     for name, values in columns.items():
-        shape = (count, 2) if name == "pixels" else (count,)
-        if values.shape != shape:
-            return f"has {name} of shape {values.shape}, not {shape}"
         if not np.isfinite(values).all():
             return f"has a {name} that is no finite number"
     inside = (columns["pixels"] >= -_EDGE) & (columns["pixels"] <= np.array(size) - _EDGE)
@@ -96,14 +89,3 @@ def _find_fault(stripe: Stripe, frame: Frame, size: tuple[int, int], laser: int)
 
 def _are_shares(values: np.ndarray) -> bool:
     return bool(((values >= 0) & (values <= 1)).all())
-
-
-def _as_kept(stripe: Stripe) -> Stripe:
-    """Give the columns the types that tables keep."""
-    columns: dict[str, Any] = {
-        f.name: np.asarray(getattr(stripe, f.name)).astype(
-            getattr(_EMPTY, f.name).dtype, copy=False
-        )
-        for f in dataclasses.fields(stripe)
-    }
-    return Stripe(**columns)

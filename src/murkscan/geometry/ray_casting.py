@@ -13,6 +13,8 @@ from ..types.rays import Rays
 
 _SLACK = 2e-5
 """Distance [m] by which a path may miss its end: Embree counts in single precision."""
+_BLOCK = 50_000
+"""Triangles that are looked at together: what lies between takes 10 MB."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,13 +56,13 @@ class RayCaster:
     def range_to_face(self, rays: Rays, face: Indices) -> Scalars:
         """Give the distance along each ray to the plane of a triangle [m], in double precision."""
         normal = self.normals[face]
-        height = np.einsum("ij,ij->i", self._corners[face] - rays.origins, normal)
+        height = np.einsum("ij,ij->i", self._corners(face) - rays.origins, normal)
         with np.errstate(divide="ignore", invalid="ignore"):
             return height / np.einsum("ij,ij->i", rays.directions, normal)
 
     def height_above(self, points: Points, face: Indices) -> Scalars:
         """Give the signed distance of each point from the plane of a triangle [m]."""
-        return np.einsum("ij,ij->i", points - self._corners[face], self.normals[face])
+        return np.einsum("ij,ij->i", points - self._corners(face), self.normals[face])
 
     def is_free(self, rays: Rays, ranges: Scalars) -> Mask:
         """Tell along which rays nothing lies before the given range [m]."""
@@ -69,13 +71,17 @@ class RayCaster:
     @cached_property
     def normals(self) -> Directions:
         """Unit normal of each triangle; the zero vector for one without area."""
-        a, b, c = (self.mesh.vertices[corner] for corner in self.mesh.faces.T)
-        normals = np.cross(b - a, c - a)
-        return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+        normals = np.empty((len(self.mesh.faces), 3))
+        for start in range(0, len(normals), _BLOCK):
+            some = slice(start, start + _BLOCK)
+            a, b, c = (self.mesh.vertices[corner] for corner in self.mesh.faces[some].T)
+            across = np.cross(b - a, c - a)
+            size = np.linalg.norm(across, axis=1, keepdims=True)
+            normals[some] = across / np.maximum(size, 1e-300)
+        return normals
 
-    @cached_property
-    def _corners(self) -> Points:
-        return self.mesh.vertices[self.mesh.faces[:, 0]]
+    def _corners(self, face: Indices) -> Points:
+        return self.mesh.vertices[self.mesh.faces[face, 0]]
 
     @cached_property
     def _middle(self) -> Points:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
+from jaxtyping import Float
 
 from ..errors import FormatError
 from ..types.cloud_part import CloudPart
@@ -19,6 +20,7 @@ from .cloud_columns import COLUMNS, as_rows, from_columns
 
 _SHOWN_AS = {"scan_line": "line"} | {axis: f"{axis}_m" for axis in "xyz"}
 """What columns of a cloud are called here, where units stand in the names."""
+_ERRORS = ("x_m", "y_m", "z_m", "turn_x_rad", "turn_y_rad", "turn_z_rad")
 _FIRST = ("laser", "frame", "scan_line", "branch")
 _ORDER = [*_FIRST, *(name for name in COLUMNS.names or () if name not in _FIRST)]
 
@@ -32,7 +34,7 @@ def save_stripe(path: Path, stripe: Stripe) -> None:
     u, v = stripe.pixels.T
     columns = {"frame": stripe.frame, "time_s": stripe.time, "u": u, "v": v}
     columns |= {"sigma": stripe.sigma, "signal": stripe.signal, "posterior": stripe.posterior}
-    _save(path, columns | {"laser": stripe.laser, "branch": stripe.branch})
+    save_columns(path, columns | {"laser": stripe.laser, "branch": stripe.branch})
 
 
 def load_stripe(path: Path) -> Stripe:
@@ -41,7 +43,7 @@ def load_stripe(path: Path) -> Stripe:
     Raises:
         FormatError: The file is no such table.
     """
-    columns = _load(path)
+    columns = load_columns(path)
     return Stripe(
         frame=columns["frame"],
         time=columns["time_s"],
@@ -64,7 +66,7 @@ def save_profile(path: Path, profile: Profile) -> None:
     columns = {"frame": profile.frame, "time_s": profile.time, "laser": profile.laser}
     columns |= {"u": u, "v": v, "x_m": x, "y_m": y, "z_m": z, "sigma_m": profile.sigma}
     columns |= {"signal": profile.signal, "posterior": profile.posterior}
-    _save(path, columns | {"branch": profile.branch})
+    save_columns(path, columns | {"branch": profile.branch})
 
 
 def load_profile(path: Path) -> Profile:
@@ -73,7 +75,7 @@ def load_profile(path: Path) -> Profile:
     Raises:
         FormatError: The file is no such table.
     """
-    columns = _load(path)
+    columns = load_columns(path)
     return Profile(
         frame=columns["frame"],
         time=columns["time_s"],
@@ -87,6 +89,39 @@ def load_profile(path: Path) -> Profile:
     )
 
 
+def save_pose_errors(path: Path, errors: Float[np.ndarray, "n 6 m"]) -> None:
+    """Write the independent errors of a trajectory: a row a pose, six columns an error.
+
+    What moves no pose at all is left out of the columns: most errors are of one axis.
+
+    Raises:
+        DeviceError: The disk is full or cannot be written.
+    """
+    columns = {
+        f"{name}_{mode}": errors[:, axis, mode].astype(np.float32)
+        for mode in range(errors.shape[2])
+        for axis, name in enumerate(_ERRORS)
+        if errors[:, axis, mode].any() or axis == 0
+    }
+    save_columns(path, columns)
+
+
+def load_pose_errors(path: Path) -> Float[np.ndarray, "n 6 m"]:
+    """Read what `save_pose_errors` wrote.
+
+    Raises:
+        FormatError: The file is no such table.
+    """
+    columns = load_columns(path)
+    modes = sum(name.startswith(f"{_ERRORS[0]}_") for name in columns)
+    errors = np.zeros((len(columns[f"{_ERRORS[0]}_0"]), len(_ERRORS), modes), np.float32)
+    for mode in range(modes):
+        for axis, name in enumerate(_ERRORS):
+            if f"{name}_{mode}" in columns:
+                errors[:, axis, mode] = columns[f"{name}_{mode}"]
+    return errors
+
+
 def save_cloud_part(path: Path, part: CloudPart) -> None:
     """Write a part of a cloud as columns, with the points that were taken out of it and why.
 
@@ -96,7 +131,7 @@ def save_cloud_part(path: Path, part: CloudPart) -> None:
     rows = as_rows(part.cloud)
     columns = {_SHOWN_AS.get(name, name): rows[name] for name in _ORDER}
     causes = np.array(["", *part.causes])
-    _save(path, columns | {"taken_out": causes[part.taken_out]})
+    save_columns(path, columns | {"taken_out": causes[part.taken_out]})
 
 
 def load_cloud_part(path: Path) -> CloudPart:
@@ -105,12 +140,22 @@ def load_cloud_part(path: Path) -> CloudPart:
     Raises:
         FormatError: The file is no such table.
     """
-    columns = _load(path)
+    columns = load_columns(path)
     words, numbers = np.unique(columns["taken_out"].astype(str), return_inverse=True)
     causes = tuple(word for word in words.tolist() if word)
     taken_out = numbers + (0 if "" in words else 1)
     cloud = from_columns({name: columns[_SHOWN_AS.get(name, name)] for name in _ORDER})
     return CloudPart(cloud, taken_out.astype(np.uint8), causes)
+
+
+def count_rows(path: Path) -> int:
+    """Count the rows of a table, without reading them.
+
+    Raises:
+        FormatError: The file is no table, or missing.
+    """
+    with _blaming(path):
+        return int(pq.read_metadata(path).num_rows)
 
 
 @contextmanager
@@ -144,7 +189,7 @@ def load_true_stripe(path: Path) -> TrueStripe:
     Raises:
         FormatError: The file is no such table.
     """
-    columns = _load(path)
+    columns = load_columns(path)
     return TrueStripe(
         frame=columns["frame"],
         laser=columns["laser"],
@@ -166,7 +211,12 @@ def _columns_of_truth(stripe: TrueStripe) -> dict[str, np.ndarray]:
     return columns | {"signal": stripe.signal, "snr": stripe.snr, "crlb_px": stripe.crlb}
 
 
-def _save(path: Path, columns: Mapping[str, np.ndarray]) -> None:
+def save_columns(path: Path, columns: Mapping[str, np.ndarray]) -> None:
+    """Write columns of equal length.
+
+    Raises:
+        DeviceError: The disk is full or cannot be written.
+    """
     table = pa.table(dict(columns))
     with replacing(path) as aside:
         pq.write_table(table, aside, **_options(table))
@@ -183,12 +233,23 @@ def _options(table: pa.Table) -> dict[str, Any]:
     }
 
 
-def _load(path: Path) -> "_Columns":
+@contextmanager
+def _blaming(path: Path) -> Iterator[None]:
     try:
-        table = pq.read_table(path, page_checksum_verification=True)
+        yield
     except (pa.ArrowInvalid, OSError) as error:
         raise FormatError(f"{path} cannot be read as a table; delete it and run again.") from error
-    return _Columns(
+
+
+def load_columns(path: Path) -> "Columns":
+    """Read what `save_columns` wrote.
+
+    Raises:
+        FormatError: The file is no such table.
+    """
+    with _blaming(path):
+        table = pq.read_table(path, page_checksum_verification=True)
+    return Columns(
         path,
         {
             name: table[name].combine_chunks().to_numpy(zero_copy_only=False)
@@ -197,8 +258,14 @@ def _load(path: Path) -> "_Columns":
     )
 
 
-class _Columns:
+class Columns:
     """Columns by name; a missing one is the file's fault."""
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._columns
 
     def __init__(self, path: Path, columns: dict[str, np.ndarray]) -> None:
         self._path, self._columns = path, columns

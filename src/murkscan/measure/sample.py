@@ -30,6 +30,8 @@ class Sample:
     """Number of each point's profile; those that follow one another differ by 1."""
     line: Indices
     """Number of each point's scan line."""
+    rows: Indices
+    """Number of each point in the scan's cloud."""
     sight: Sight | None = None
     """From where each was seen; None where nobody knows."""
     shifts: Callable[[Indices], Shifts] | None = None
@@ -65,9 +67,10 @@ class Sample:
             )
         grid = ScanGrid.from_cloud(cloud)
         if grid.is_numbered:
-            return cls(cloud, grid.profile, grid.line, sight, shifts)
+            return cls(cloud, grid.profile, grid.line, np.arange(len(cloud)), sight, shifts)
         cloud = complete_normals(cloud, ~grid.numbered)
-        return cls(cloud, *_number_some(cloud, grid.numbered), sight, shifts)
+        places = _number_some(cloud, grid.numbered)
+        return cls(cloud, *places, np.arange(len(cloud)), sight, shifts)
 
     def __len__(self) -> int:
         """Count the points."""
@@ -81,6 +84,7 @@ class Sample:
             cloud=self.cloud[which],
             profile=self.profile[which],
             line=self.line[which],
+            rows=self.rows[which],
             sight=None if self.sight is None else self.sight[which],
             shifts=None if shifts is None else lambda some: shifts(numbers[some]),
         )

@@ -6,9 +6,8 @@ from typing import final
 import numpy as np
 
 from ..types.arrays import Colours
-from ..types.cloud import PointCloud
 from ..types.mesh import Mesh
-from .paint import AbstractPaint, map_colours
+from .paint import AbstractPaint, Signal, map_colours
 
 
 @final
@@ -19,6 +18,6 @@ class ByDepth(AbstractPaint):
     forward: tuple[float, float, float] = (0.0, 0.0, 1.0)
     """The direction in which depth is counted, in the world frame."""
 
-    def paint(self, mesh: Mesh, cloud: PointCloud) -> Colours:
-        """See `AbstractPaint.paint`; the cloud is not asked."""
+    def paint(self, mesh: Mesh, signal: Signal) -> Colours:
+        """See `AbstractPaint.paint`; the signal is not asked."""
         return map_colours(mesh.vertices @ np.array(self.forward), "viridis_r")

@@ -3,13 +3,10 @@
 from dataclasses import dataclass
 from typing import final
 
-import numpy as np
-from scipy.spatial import KDTree
-
+from ..errors import InputError
 from ..types.arrays import Colours
-from ..types.cloud import PointCloud
 from ..types.mesh import Mesh
-from .paint import AbstractPaint, map_colours
+from .paint import AbstractPaint, Signal, map_colours
 
 
 @final
@@ -17,7 +14,11 @@ from .paint import AbstractPaint, map_colours
 class BySignal(AbstractPaint):
     """Cividis, bright where the stripe was bright."""
 
-    def paint(self, mesh: Mesh, cloud: PointCloud) -> Colours:
-        """Give each vertex the colour of the signal of the point nearest to it."""
-        nearest = np.asarray(KDTree(cloud.points).query(mesh.vertices)[1])
-        return map_colours(cloud.signal[nearest].astype(float), "cividis")
+    def paint(self, mesh: Mesh, signal: Signal) -> Colours:
+        """Give each vertex the colour of its point's signal; see `AbstractPaint.paint`."""
+        if mesh.points is None:
+            raise InputError(
+                "The surface does not say which points its vertices are, as one from another "
+                "program does not; make it from the cloud again."
+            )
+        return map_colours(signal[mesh.points].astype(float), "cividis")

@@ -1,10 +1,13 @@
 """Say the same surface with fewer triangles."""
 
+from dataclasses import replace
+
 import numpy as np
+from jaxtyping import Int
 from scipy.spatial import KDTree
 
 from ..errors import InputError
-from ..types.arrays import FaceMask
+from ..types.arrays import FaceMask, Faces, Points
 from ..types.mesh import Mesh
 from .base import drop_unused_vertices
 
@@ -35,18 +38,31 @@ def decimate(mesh: Mesh, *, faces: int) -> Mesh:
     if len(mesh.faces) <= faces:
         return mesh
     middle = mesh.vertices.mean(axis=0)
-    points, corners = fast_simplification.simplify(
-        np.ascontiguousarray(mesh.vertices - middle),
-        mesh.faces.astype(np.int32),
-        target_count=faces,
+    before = np.ascontiguousarray(mesh.vertices - middle), mesh.faces.astype(np.int32)
+    places, corners, collapses = fast_simplification.simplify(
+        *before, target_count=faces, return_collapses=True
     )
     corners = corners.astype(np.int64)
     # What has collapsed to a line is no triangle.
     corners = corners[(np.diff(np.sort(corners, axis=1), axis=1) > 0).all(axis=1)]
-    fewer = Mesh(points + middle, corners)
+    fewer = Mesh(places + middle, corners, points=_carry_points(mesh, *before, collapses))
     return drop_unused_vertices(
-        Mesh(fewer.vertices, corners, None if mesh.filled is None else _carry_marks(mesh, fewer))
+        fewer if mesh.filled is None else replace(fewer, filled=_carry_marks(mesh, fewer))
     )
+
+
+def _carry_points(
+    mesh: Mesh, places: Points, corners: Faces, collapses: Int[np.ndarray, "edges 2"]
+) -> Int[np.ndarray, " left"] | None:
+    """Give each vertex the nearest of the points that have become it."""
+    import fast_simplification
+
+    if mesh.points is None:
+        return None
+    fewer, _, number = fast_simplification.replay_simplification(places, corners, collapses)
+    order = np.lexsort((np.linalg.norm(fewer[number] - places, axis=1), number))
+    _, first = np.unique(number[order], return_index=True)
+    return mesh.points[order[first]]
 
 
 def _carry_marks(before: Mesh, after: Mesh) -> FaceMask:

@@ -1,8 +1,8 @@
 """Triangles between neighbouring profiles: the surface exactly as it was scanned."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import final
+from dataclasses import dataclass, replace
+from typing import ClassVar, final
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from ..geometry.grid import NONE, ScanGrid, reverse_links
 from ..types.arrays import Faces, Indices
 from ..types.cloud import PointCloud
 from ..types.mesh import Mesh
-from .base import AbstractMesher, drop_unused_vertices, empty_mesh
+from .base import AbstractMesher, empty_mesh, join_tiles
 from .one_sheet import join_sheets
 from .smooth import smooth_points
 
@@ -37,6 +37,8 @@ class GridMesh(AbstractMesher):
     """How far a vertex may move to even out noise, in its own standard deviations, up to 1; 0 keeps
     the measured points."""
 
+    works_in_tiles: ClassVar[bool] = True
+
     def __post_init__(self) -> None:
         """Refuse a jump that cuts everything, and smoothing beyond what noise explains."""
         if self.max_jump is not None and not self.max_jump > 0:
@@ -52,6 +54,24 @@ class GridMesh(AbstractMesher):
         Raises:
             InputError: The points do not say to which profile and scan line they belong.
         """
+        return join_tiles([self.mesh_tile(cloud, slice(0, len(cloud)))])
+
+    def mesh_tile(self, cloud: PointCloud, own: slice) -> Mesh:
+        """Make the triangles that begin at some of the points, whole profiles of them.
+
+        A tile needs the profiles before and behind, over which its points are evened out; what
+        counts as a jump is told from what it sees.
+
+        Args:
+            cloud: Points in order of frames.
+            own: Those of the tile.
+
+        Returns:
+            All of its own points, moved, and triangles between them and those that follow.
+
+        Raises:
+            InputError: The points do not say to which profile and scan line they belong.
+        """
         if len(cloud) == 0:
             return empty_mesh()
         grid = ScanGrid.from_cloud(cloud, max_jump=self.max_jump)
@@ -63,8 +83,11 @@ class GridMesh(AbstractMesher):
             )
         along, across = grid.linked(0, 1), grid.linked(1, 0)
         faces = np.concatenate([_full_cells(grid, along, across), _corners(along, across)])
+        faces = _face_camera(grid, faces)
         vertices = smooth_points(grid, along, across, most=self.smoothing)
-        return drop_unused_vertices(Mesh(vertices, _face_camera(grid, faces)))
+        first = faces[np.arange(len(faces)), grid.profile[faces].argmin(axis=1)]
+        mine = (first >= own.start) & (first < own.stop)
+        return Mesh(vertices[own], faces[mine] - own.start, points=np.arange(len(cloud))[own])
 
     def mesh_passes(self, passes: Sequence[PointCloud]) -> Mesh:
         """Make a sheet a pass; where sheets lie on one another, that of the first pass stays.
@@ -72,7 +95,15 @@ class GridMesh(AbstractMesher):
         Raises:
             InputError: The points do not say to which profile and scan line they belong.
         """
-        return join_sheets([self.mesh(one) for one in passes])
+        starts = np.cumsum([0, *map(len, passes)]).tolist()
+        sheets = [self.mesh(one) for one in passes]
+        return join_sheets(
+            [
+                replace(sheet, points=sheet.points + start)
+                for sheet, start in zip(sheets, starts, strict=False)
+                if sheet.points is not None
+            ]
+        )
 
 
 def _full_cells(grid: ScanGrid, along: Indices, across: Indices) -> Faces:

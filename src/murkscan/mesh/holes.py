@@ -1,7 +1,7 @@
 """Close holes of a surface, and say where: nothing was measured there."""
 
 from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Bool, Int
@@ -63,7 +63,7 @@ def close_holes(mesh: Mesh, *, largest: float) -> ClosedHoles:
     faces = np.concatenate([mesh.faces, *patches])
     before = np.zeros(len(mesh.faces), bool) if mesh.filled is None else mesh.filled
     filled = np.concatenate([before, np.ones(len(faces) - len(before), bool)])
-    closed = Mesh(mesh.vertices, faces, filled, mesh.colours)
+    closed = replace(mesh, faces=faces, filled=filled)
     return ClosedHoles(closed, len(patches), num_left)
 
 

@@ -16,16 +16,22 @@ def join_sheets(sheets: Sequence[Mesh]) -> Mesh:
     Where two meet, neither is moved: the seam is open, and jagged by half a triangle.
 
     Args:
-        sheets: Surfaces in one frame, turned to the same side; the first stays as it is. Colours
-            and filled holes are not looked at.
+        sheets: Surfaces in one frame, turned to the same side; the first stays as it is. Their
+            vertices know their points. Colours and filled holes are not looked at.
     """
     joined = empty_mesh()
     for sheet in sheets:
         kept = sheet
         if len(joined.faces) and len(sheet.faces):
             kept = drop_unused_vertices(replace(sheet, faces=sheet.faces[~lies_on(sheet, joined)]))
-        faces = kept.faces + len(joined.vertices)
-        joined = Mesh(
-            np.concatenate([joined.vertices, kept.vertices]), np.concatenate([joined.faces, faces])
-        )
+        joined = lay_together([joined, kept])
     return joined
+
+
+def lay_together(meshes: Sequence[Mesh]) -> Mesh:
+    """Make one surface of several, of whose vertices all know their points."""
+    starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)]).tolist()
+    faces = [mesh.faces + start for mesh, start in zip(meshes, starts, strict=False)]
+    points = [mesh.points for mesh in meshes if mesh.points is not None]
+    vertices = [mesh.vertices for mesh in meshes]
+    return Mesh(np.concatenate(vertices), np.concatenate(faces), points=np.concatenate(points))

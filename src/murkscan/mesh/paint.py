@@ -3,10 +3,13 @@
 import abc
 
 import numpy as np
+from jaxtyping import Float32
 
 from ..types.arrays import Colours, Scalars
-from ..types.cloud import PointCloud
 from ..types.mesh import Mesh
+
+Signal = Float32[np.ndarray, " points"]
+"""Of each point of a cloud [grey levels]."""
 
 _SHARE = 0.5
 """Percent of the vertices at each end of the values that may lie beyond the colours."""
@@ -16,12 +19,15 @@ class AbstractPaint(abc.ABC):
     """A way to colour a surface. Subclasses are final: wrap one, do not subclass it."""
 
     @abc.abstractmethod
-    def paint(self, mesh: Mesh, cloud: PointCloud) -> Colours:
-        """Give each vertex a colour.
+    def paint(self, mesh: Mesh, signal: Signal) -> Colours:
+        """Compute a colour for each vertex.
 
         Args:
             mesh: The surface, with one vertex or more.
-            cloud: The points that it was made of, one or more.
+            signal: That of each point of the cloud it was made of [grey levels].
+
+        Raises:
+            InputError: It does not say which points its vertices are.
         """
 
 

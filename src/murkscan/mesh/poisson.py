@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
@@ -65,7 +65,7 @@ class Poisson(AbstractMesher):
         _import_open3d()
 
     def mesh(self, cloud: PointCloud) -> Mesh:
-        """Make the surface; its vertices lie near the points, not on them.
+        """Make the surface; its vertices lie near the points, and stand for the nearest.
 
         Raises:
             Degenerate: Points that know no profiles lie on one line.
@@ -84,7 +84,11 @@ class Poisson(AbstractMesher):
         spacing = min(one.spacing for one in seen)
         depth = _depth_for(with_normal.points, spacing) if self.depth is None else self.depth
         mesh = _reconstruct(open3d, with_normal, depth)
-        return _trim(_face_normals(mesh, with_normal), seen)
+        trimmed = _trim(_face_normals(mesh, with_normal), seen)
+        if not len(trimmed.vertices):
+            return empty_mesh()
+        nearest = np.asarray(cKDTree(cloud.points).query(trimmed.vertices)[1])
+        return replace(trimmed, points=nearest.astype(np.int64))
 
 
 def _require_width(points: Points) -> None:

@@ -28,6 +28,14 @@ class AbstractMotion(abc.ABC):
         """What the log's clock shows when recording time is 0 [s]; 0 where there is no log."""
         return 0.0
 
+    @property
+    @abc.abstractmethod
+    def accuracy(self) -> str:
+        """How well the poses are known, in words; empty where nothing is stated.
+
+        Then `Trajectory.errors` is None, and the motion's error is in no interval.
+        """
+
     @abc.abstractmethod
     def follow(self, times: Scalars, pictures: Scalars) -> Trajectory:
         """Give world_from_camera at the time of each frame.
@@ -53,16 +61,31 @@ class AbstractMotion(abc.ABC):
         return ()
 
 
-def follow_line(times: Scalars, distances: Scalars, along: Direction) -> Trajectory:
-    """Move without turning: from the camera's first place by distances [m] along one axis."""
+def follow_line(
+    times: Scalars, distances: Scalars, along: Direction, *, sigma: float
+) -> Trajectory:
+    """Move without turning: from the camera's first place by distances [m] along one axis.
+
+    Args:
+        times: When [s].
+        distances: How far [m].
+        along: The axis.
+        sigma: Standard deviation of the distances' common factor, as a share.
+    """
     positions: Points = np.zeros((len(times), 3))
     positions[:, "xyz".index(along)] = distances
     upright = np.tile([1.0, 0.0, 0.0, 0.0], (len(times), 1))
-    return Trajectory(times, positions, upright)
+    stretched = np.concatenate([sigma * positions, np.zeros_like(positions)], axis=1)[:, :, None]
+    return Trajectory(times, positions, upright, stretched)
 
 
-def check_pace(pace: float, flag: str) -> None:
-    """Refuse a speed or a step that moves nothing."""
+def check_pace(pace: float, sigma: float, flag: str) -> None:
+    """Refuse a speed or a step that moves nothing, and a standard deviation that cannot be."""
+    if not 0 <= sigma < 1:
+        raise InputError(
+            f"{flag} must be known to a standard deviation from 0 to below 100 % of it, got "
+            f"{sigma:.0%}."
+        )
     if not _SLOWEST <= abs(pace) <= _FASTEST:
         raise InputError(
             f"{flag} must be a number other than 0 and between a nanometre and a kilometre, got "

@@ -22,12 +22,21 @@ class ConstantSpeed(AbstractMotion):
     along: Direction
     """Camera axis along which it moves."""
 
+    sigma: float = 0.1
+    """Standard deviation of the speed, as a share of it; unless said, that of a vehicle which a
+    pilot holds at a speed by eye."""
+
     needs_times: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         """Refuse a speed that moves nothing."""
-        check_pace(self.speed, "The speed")
+        check_pace(self.speed, self.sigma, "The speed")
+
+    @property
+    def accuracy(self) -> str:
+        """See `AbstractMotion.accuracy`."""
+        return f"the speed is known to {self.sigma:.2%} (1σ)"
 
     def follow(self, times: Scalars, pictures: Scalars) -> Trajectory:
         """Give world_from_camera at the time of each frame; see `AbstractMotion.follow`."""
-        return follow_line(times, self.speed * (times - times[0]), self.along)
+        return follow_line(times, self.speed * (times - times[0]), self.along, sigma=self.sigma)

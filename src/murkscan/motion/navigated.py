@@ -1,11 +1,13 @@
 """From a log of measurements, alone or with a speed, to the motion of a scan."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import InputError
 from ..io.navigation_log import NavigationLog, read_navigation_log
+from ..types.navigation import NavigationAccuracy
 from ..types.pose import Pose
 from ..types.rig import Rig
 from ..types.trajectory import Trajectory
@@ -21,6 +23,7 @@ def follow_navigation(
     rig: Rig,
     *,
     speed: float | None,
+    sigma: float = ConstantSpeed.sigma,
     along: Direction,
     crs: str | None = None,
     start_time: float = 0.0,
@@ -36,6 +39,7 @@ def follow_navigation(
         path: The log: an MCAP, a bag, a .tlog, NMEA, or CSV.
         rig: The rig; its mount says how the camera sits on the vehicle.
         speed: Speed of the camera along one of its axes [m/s]; None where the log tells.
+        sigma: Standard deviation of that speed, as a share of it.
         along: The axis.
         crs: Coordinate system of latitude and longitude; UTM's zone unless given.
         start_time: Log time at which recording time is 0 [s].
@@ -58,15 +62,35 @@ def follow_navigation(
     mount = rig.vehicle_from_camera
     if speed is not None and log.navigation.attitude is None:
         said.append("the log has no attitude, so the camera moves straight on at the speed given")
-        return ConstantSpeed(speed, along), tuple(said)
+        return ConstantSpeed(speed, along, sigma), tuple(said)
     if mount is None and log.poses is None:
         said.append(
             "the rig has no [mount]: its camera's x, y, z are taken for the vehicle's forward, "
             "starboard, down"
         )
     way = _find_way(path, log, mount or Pose.identity(), speed, along, said)
-    motion = PoseLog(way, mount or Pose.identity(), start_time, time_offset, gap, name=str(path))
+    motion = PoseLog(
+        way,
+        mount or Pose.identity(),
+        start_time,
+        time_offset,
+        gap,
+        stated=_state(rig.navigation, speed=speed, sigma=sigma, is_placed=way is log.poses),
+        name=str(path),
+    )
     return motion, tuple(said)
+
+
+def _state(
+    stated: NavigationAccuracy | None, *, speed: float | None, sigma: float, is_placed: bool
+) -> NavigationAccuracy | None:
+    """Say how good the poses are that were made from a log: reckoned places have other errors."""
+    if speed is None and (stated is None or is_placed):
+        return stated
+    known = stated or NavigationAccuracy()
+    if speed is None:
+        return replace(known, position_noise=None, speed=None)
+    return replace(known, position_noise=None, velocity_bias=0.0, speed=sigma or None)
 
 
 def _find_way(

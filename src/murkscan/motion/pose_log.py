@@ -1,7 +1,7 @@
 """A vehicle, an arm or a stage that logs where it is."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import ClassVar, final
 
@@ -9,9 +9,11 @@ import numpy as np
 
 from ..errors import InputError
 from ..types.arrays import Mask, Scalars
+from ..types.navigation import NavigationAccuracy
 from ..types.pose import Pose
 from ..types.trajectory import Trajectory
 from .base import AbstractMotion
+from .errors import log_errors
 from .excursions import Excursion, leave_out_excursions
 
 _SAME = 1e-6
@@ -40,6 +42,9 @@ class PoseLog(AbstractMotion):
     gap: float = 0.5
     """Longest time between two poses that is bridged [s]."""
 
+    stated: NavigationAccuracy | None = None
+    """How good the vehicle's instruments are; None: nobody has said."""
+
     name: str = ""
     """What the log is called, for the record."""
 
@@ -61,6 +66,13 @@ class PoseLog(AbstractMotion):
         if not self.gap > 0:
             raise InputError(f"The longest gap that is bridged must be above 0, got {self.gap:g}.")
 
+    @property
+    def accuracy(self) -> str:
+        """See `AbstractMotion.accuracy`."""
+        if self.stated is None or self.stated == NavigationAccuracy():
+            return ""
+        return "the log is as good as [navigation] of the rig file says"
+
     def follow(self, times: Scalars, pictures: Scalars) -> Trajectory:
         """Give world_from_camera at the time of each frame; see `AbstractMotion.follow`."""
         log, _ = self._believed
@@ -70,8 +82,11 @@ class PoseLog(AbstractMotion):
             raise InputError(self._say_uncovered(moments))
         # Rounding may have put the first and the last of them just outside.
         inside = np.clip(moments[covered], log.times[0], log.times[-1])
-        poses = log.at(inside).follow_mount(self.vehicle_from_camera)
-        return Trajectory(times[covered], poses.positions, poses.quaternions)
+        poses = log.at(inside)
+        if self.stated is not None:
+            step = float(np.median(np.diff(log.times))) if len(log.times) > 1 else self.gap
+            poses = replace(poses, errors=log_errors(poses, self.stated, step=step))
+        return replace(poses.follow_mount(self.vehicle_from_camera), times=times[covered])
 
     def remarks(self, times: Scalars) -> tuple[str, ...]:
         """Tell which frames have no pose, and which poses are left out; see the base."""

@@ -6,6 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from ..geometry.stripe_blur import Sight
 from ..types.arrays import Pixels, Points, Scalars, SmallNumbers
+from ..types.profile import Profile
 from ..types.rig import Rig
 from ..types.trajectory import Trajectory
 from .sheet import light_across
@@ -71,3 +72,19 @@ def shift_points(
     if rig.vehicle_from_camera is not None:
         world_from_rig = world_from_rig @ rig.vehicle_from_camera.rotation.T
     return world_from_rig[which] @ shifts
+
+
+def shifts_in_world(profile: Profile, trajectory: Trajectory, rig: Rig) -> Shifts:
+    """Compute how far points of a scan move with each independent error of its rig and its motion.
+
+    Args:
+        profile: The points, in the camera frame, with the pixels that they come from.
+        trajectory: world_from_camera, with its errors where any are stated.
+        rig: The rig as it moves: with its mount only where the poses came through it.
+
+    Returns:
+        Shifts along the world's axes [m], as of `shift_points`; those of the motion come last.
+    """
+    by_rig = shift_points(profile.pixels, profile.laser, profile.time, trajectory, rig)
+    points = trajectory.transform(profile.points, profile.time)
+    return np.concatenate([by_rig, trajectory.shifts(points, profile.time)], axis=2)

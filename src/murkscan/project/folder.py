@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -14,10 +14,15 @@ from ..io.json_files import save_json
 from ..io.mesh_files import load_mesh, save_mesh
 from ..io.mlp import frame_name, save_project, split_frames
 from ..io.parquet import (
+    count_rows,
     load_cloud_part,
+    load_columns,
+    load_pose_errors,
     load_profile,
     load_stripe,
     save_cloud_part,
+    save_columns,
+    save_pose_errors,
     save_profile,
     save_stripe,
 )
@@ -172,6 +177,11 @@ class Project:
         """Number the parts that triangulate has made so far."""
         return {_part_of(name) for name in self._files(TRIANGULATE).made("profiles/")}
 
+    def count_profile_points(self) -> dict[int, int]:
+        """Count the points of each part of a finished triangulate, without reading them."""
+        self.finished(TRIANGULATE)
+        return self._count_rows(TRIANGULATE, "profiles/")
+
     def save_profile_part(self, part: int, profile: Profile) -> None:
         """Write one part of triangulate."""
         with self._files(TRIANGULATE).making(_profile_name(part)) as path:
@@ -231,14 +241,21 @@ class Project:
         return sorted(Path(name).stem for name in self._files(EXTRACT).made("overlay/"))
 
     def save_trajectory(self, trajectory: Trajectory) -> None:
-        """Write motion/trajectory.csv."""
+        """Write motion/trajectory.csv and, where errors are stated, motion/errors.parquet."""
         with self._files(MOTION).making("trajectory.csv") as path:
             save_poses(path, trajectory)
+        if trajectory.errors is not None:
+            with self._files(MOTION).making("errors.parquet") as path:
+                save_pose_errors(path, trajectory.errors)
 
     def load_trajectory(self) -> Trajectory:
         """Read the poses of a finished motion."""
         self.finished(MOTION)
-        return load_poses(self._files(MOTION).checked("trajectory.csv"))
+        files = self._files(MOTION)
+        trajectory = load_poses(files.checked("trajectory.csv"))
+        if not files.made("errors.parquet"):
+            return trajectory
+        return replace(trajectory, errors=load_pose_errors(files.checked("errors.parquet")))
 
     def save_cloud_part(self, part: int, points: CloudPart) -> None:
         """Write one part of the cloud, with what was taken out of it."""
@@ -248,6 +265,11 @@ class Project:
     def find_cloud_parts(self) -> list[int]:
         """Number the parts that cloud has made so far, in order."""
         return sorted(map(_part_of, self._files(CLOUD).made("points/")))
+
+    def count_cloud_points(self) -> dict[int, int]:
+        """Count the points of each part of a finished cloud, those that were taken out, too."""
+        self.finished(CLOUD)
+        return self._count_rows(CLOUD, "points/")
 
     def load_cloud_part(self, part: int) -> CloudPart:
         """Read one part of the cloud, with what was taken out of it."""
@@ -276,7 +298,7 @@ class Project:
         paths: list[Path] = []
         with self._files(CLOUD).making("cloud.ply") as path, writing_cloud(path) as write:
             for part in self.find_cloud_parts():
-                points = self.load_cloud_part(part).kept
+                points = self.load_kept_part(part)
                 write(points)
                 if frames:
                     paths += self._save_frames(points)
@@ -297,13 +319,20 @@ class Project:
     def iterate_cloud(self) -> Iterator[PointCloud]:
         """Read the cloud of a finished cloud stage, part by part."""
         self.finished(CLOUD)
-        return (self.load_cloud_part(part).kept for part in self.find_cloud_parts())
+        return map(self.load_kept_part, self.find_cloud_parts())
+
+    def load_kept_part(self, part: int) -> PointCloud:
+        """Read the points that the cloud keeps of one part."""
+        return self.load_cloud_part(part).kept
 
     def save_mesh(self, mesh: Mesh) -> None:
-        """Write mesh/mesh.ply, .stl and .glb."""
+        """Write mesh/mesh.ply, .stl and .glb, and which points the vertices are."""
         for suffix in ("ply", "stl", "glb"):
             with self._files(MESH).making(f"mesh.{suffix}") as path:
                 save_mesh(path, mesh)
+        if mesh.points is not None:
+            with self._files(MESH).making("points.parquet") as path:
+                save_columns(path, {"point": mesh.points})
 
     def load_mesh(self) -> Mesh:
         """Read the mesh of a finished mesh stage.
@@ -317,7 +346,11 @@ class Project:
                 "profiles, or points too far apart. Scan more frames, or look at extract/overlay "
                 "to see what was found in them."
             )
-        return load_mesh(self._files(MESH).checked("mesh.ply"))
+        files = self._files(MESH)
+        mesh = load_mesh(files.checked("mesh.ply"))
+        if not files.made("points.parquet"):
+            return mesh
+        return replace(mesh, points=load_columns(files.checked("points.parquet"))["point"])
 
     def save_picture(self, name: str, picture: ColourImage) -> None:
         """Write one picture of the surface, view/<name>.png."""
@@ -341,6 +374,10 @@ class Project:
     def _save_page(self, kind: Kind[Any], name: str, page: str) -> None:
         with self._files(kind).making(name) as path:
             save_text(path, page)
+
+    def _count_rows(self, kind: Kind[Any], below: str) -> dict[int, int]:
+        files = self._files(kind)
+        return {_part_of(name): count_rows(files.checked(name)) for name in files.made(below)}
 
     def _files(self, kind: Kind[Any]) -> StageFiles:
         return StageFiles(self.root / kind.word)

@@ -59,6 +59,9 @@ class MotionResult:
     """Length of the camera's path [m]."""
     carries_mount: bool = False
     """Whether the poses came through the rig's mount, whose errors they then share."""
+    accuracy: str = ""
+    """How well the poses are known, in words; empty where nothing is stated, and their error is in
+    no interval."""
     start: float = field(default=0.0, metadata={"unit": "s"})
     """What the log's clock showed when recording time was 0 [s]."""
 
@@ -204,9 +207,11 @@ class ReportResult:
     largest_gap: str | None = None
     """Why most of the rest is missing; None where nothing is."""
     half_width: float | None = field(default=None, metadata={"unit": "m"})
-    """Half the 95 % interval of a typical point [m]."""
-    is_common_known: bool = False
-    """Whether that heeds the calibration, too."""
+    """Half the 95 % interval of a typical point [m], with all that is stated."""
+    own_half_width: float | None = field(default=None, metadata={"unit": "m"})
+    """The same by its own noise alone [m]."""
+    unstated: tuple[str, ...] = ()
+    """Whose errors are in neither, since nothing is stated of them; sentences for the user."""
     steps_with_advice: tuple[str, ...] = ()
     """Steps of the calibration whose verdict asks for better."""
 

@@ -56,7 +56,10 @@ def as_html(summary: ScanSummary) -> str:
             Section("Over time", _charts(summary)),
         ]
     if summary.trust is not None:
-        sections.append(Section("Uncertainty at 68 and 95 %", uncertainty_blocks(summary.trust)))
+        blocks = uncertainty_blocks(
+            summary.trust, motion=summary.recorded.motion, unstated=summary.recorded.unstated
+        )
+        sections.append(Section("Uncertainty at 68 and 95 %", blocks))
     calibrated = calibration_blocks(summary.recorded.calibration, summary.steps)
     sections.append(Section("Calibration", calibrated))
     if summary.recorded.skips:
@@ -176,8 +179,10 @@ def _spreads(summary: ScanSummary) -> Table:
     return Table(rows, head=("", "smallest", "5 %", "median", "95 %", "largest"))
 
 
-def uncertainty_blocks(trust: Trust) -> list[Block]:
-    """Show both parts of the points' uncertainty at two levels."""
+def uncertainty_blocks(
+    trust: Trust, *, motion: str = "", unstated: Sequence[str] = ()
+) -> list[Block]:
+    """Show both parts of the points' uncertainty at two levels, and what is in neither."""
     parts = [("independent", trust.independent), ("common", trust.common), ("both", trust.total)]
     rows = [
         (name, *(_at(part, share) for share in ("median", "high")), *_at_95(part))
@@ -189,18 +194,21 @@ def uncertainty_blocks(trust: Trust) -> list[Block]:
         Note(
             "How far a point may be off, with a confidence of 68 % (1 σ) and of 95 % (1.96 σ): for "
             "the median point, and what 95 % of the points do not exceed. The independent part "
-            "differs from point to point, and averaging lowers it; the common part is the rig's, "
-            "shared by all points of the scan, and no average lowers it."
+            "differs from point to point, and averaging lowers it; the common part is shared by "
+            f"the points of the scan, and no average lowers it.{_tell_motion(motion)}"
         ),
         Table(rows, head=head),
     ]
-    if trust.common is None:
-        text = (
-            "The rig file states no covariance, so the common part is unknown and missing here; "
-            "murkscan calibrate writes one."
-        )
-        blocks.insert(0, Note(text, "warning"))
-    return blocks
+    return [*(Note(text, "warning") for text in unstated), *blocks]
+
+
+def _tell_motion(motion: str) -> str:
+    if not motion:
+        return ""
+    return (
+        f" It is that of the rig and of the motion: {motion}. The motion's grows from the first "
+        "frame on, and a length feels only what its two ends do not share."
+    )
 
 
 def _at(part: Spread | None, share: str) -> float | None:

@@ -24,6 +24,10 @@ class Recorded:
     """What could not be read: index of the first frame, how many frames, and why."""
     remarks: Sequence[str] = ()
     """What is odd about the recording, with its cure."""
+    motion: str = ""
+    """How well the motion is known, in words."""
+    unstated: Sequence[str] = ()
+    """Whose errors are in no interval, since nothing is stated of them; sentences for the user."""
     attenuation: Attenuation | None = None
     """How murky the water was, where the glow told."""
     path: str = ""

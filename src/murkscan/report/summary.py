@@ -129,7 +129,11 @@ def summarise(
     reach = Reach.from_points(values.pop("range"), values["signal"], noise=noise)
     spreads = {name: Spread.from_values(numbers) for name, numbers in values.items()}
     model, trust = measure_cloud(
-        cloud, num_outliers, mesh_size, is_stated=bool(rig.covariance.names)
+        cloud,
+        num_outliers,
+        mesh_size,
+        is_stated=bool(rig.covariance.names)
+        or (trajectory is not None and trajectory.errors is not None),
     )
     needed = wanted if wanted is not None else spreads["along"].median
     return ScanSummary(

@@ -18,8 +18,8 @@ class Trust:
     independent: Spread
     """What differs from point to point, along the ray: an average of many has less of it."""
     common: Spread | None
-    """What all points share, since one rig saw them: no average helps. None where the rig file
-    states no covariance."""
+    """What all points share, since one rig on one trajectory saw them: no average helps. None where
+    nothing is stated of either."""
     total: Spread
     """Both together."""
 

@@ -5,9 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from jaxtyping import Float
 from scipy.spatial import cKDTree
-from scipy.spatial.transform import Rotation
 
 from ..calibrate.board.chessboard import Chessboard, Margin
 from ..calibrate.check import BoardCheck, LinedBoard, check_on_boards, judge_length
@@ -17,7 +15,7 @@ from ..errors import InputError
 from ..extract import AbstractExtractor, GrayGravity
 from ..io.rig_toml import load_rig
 from ..optics.length import Length, measure_length
-from ..optics.uncertainty import common_shifts
+from ..optics.seen_points import shifts_in_world
 from ..project import Project, load_moving_rig
 from ..types.arrays import Points, Vector
 from ..types.profile import Profile
@@ -133,7 +131,7 @@ def check_in_scan(
     in_world = trajectory.transform(profile.points, profile.time)
     nearest = np.array([_nearest(in_world, end) for end in ends])
     length = _measure(profile[nearest], in_world[nearest], trajectory, rig)
-    is_common_known = bool(rig.covariance.names)
+    is_common_known = bool(rig.covariance.names) or trajectory.errors is not None
     verdict = judge_length(
         length.value,
         known,
@@ -156,18 +154,7 @@ def _nearest(in_world: Points, end: Vector) -> int:
 
 def _measure(ends: Profile, in_world: Points, trajectory: Trajectory, rig: Rig) -> Length:
     """Give the length between two points of a profile, with both parts of its uncertainty."""
-    world_from_camera = _rotations(trajectory, ends)
     along = in_world - trajectory.transform(np.zeros_like(in_world), ends.time)
     rays = along / np.linalg.norm(along, axis=1, keepdims=True)
-    world_from_rig = world_from_camera
-    if rig.vehicle_from_camera is not None:
-        world_from_rig = world_from_camera @ rig.vehicle_from_camera.rotation.T
-    shifts = np.concatenate(
-        [common_shifts(ends.pixels[[i]], rig, int(ends.laser[i])) for i in (0, 1)]
-    )
-    return measure_length(in_world, rays * ends.sigma[:, None], world_from_rig @ shifts)
-
-
-def _rotations(trajectory: Trajectory, ends: Profile) -> Float[np.ndarray, "2 3 3"]:
-    quaternions = [trajectory.at(ends.time[[i]]).quaternions for i in (0, 1)]
-    return Rotation.from_quat(np.concatenate(quaternions), scalar_first=True).as_matrix()
+    shifts = shifts_in_world(ends, trajectory, rig)
+    return measure_length(in_world, rays * ends.sigma[:, None], shifts)

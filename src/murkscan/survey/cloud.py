@@ -1,13 +1,16 @@
 """Merge a scan's profiles into one cloud, block by block."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
 
 import numpy as np
 
 from ..cloud import OUTLIER_RULES, AbstractOutlierRule, SeenCloud, find_outliers, merge_profiles
-from ..cloud.blocks import BLOCK, ProfileBlock, cut_blocks
+from ..distribute import AbstractExecutor, Threads
 from ..project import (
     CLOUD,
     EXTRACT,
@@ -18,9 +21,11 @@ from ..project import (
     as_it_moves,
     describe,
 )
-from ..types.cloud import empty_cloud
+from ..project.blocks import BLOCK, HALO, Block, cut_blocks
+from ..types.cloud import PointCloud
 from ..types.cloud_part import CloudPart
 from ..types.laser import Axis
+from ..types.profile import Profile
 from ..types.rig import Rig
 from ..types.trajectory import Trajectory
 from .common_part import spread_common
@@ -38,6 +43,7 @@ def build_cloud(
     rules: Sequence[AbstractOutlierRule] = OUTLIER_RULES,
     frames: bool = False,
     block: int = BLOCK,
+    executor: AbstractExecutor | None = None,
     progress: Progress = silent,
 ) -> CloudResult:
     """Run the cloud stage; a scan that does not fit into memory is worked on in blocks.
@@ -47,7 +53,8 @@ def build_cloud(
         rig: Its rig.
         rules: The reasons not to believe a point.
         frames: Whether to write one cloud a frame for more than 500 frames, too.
-        block: Points that are worked on at once, about.
+        block: Points that are worked on at once, about; the result depends on it.
+        executor: Who does it; threads unless given. The result is the same.
         progress: Told how many blocks are done.
 
     Raises:
@@ -64,57 +71,88 @@ def build_cloud(
         | {"covariance": describe(rig.covariance)},
     )
 
-    def make(trajectory: Trajectory) -> CloudResult:
-        judge = _Judge(trajectory, rig, rig.lasers[extracted.laser].axis, rules)
-        _make_parts(project, judge, block, progress)
+    def make(sizes: Mapping[int, int]) -> CloudResult:
+        axis = rig.lasers[extracted.laser].axis
+        job = _Job(project, moved.digest, rig, axis, tuple(rules))
+        blocks = cut_blocks(sizes, block=block)
+        result = _make_parts(job, blocks, executor or Threads(), progress)
         project.export_cloud(frames=frames or extracted.frames <= FRAME_FILES)
-        return _count(project, rules)
+        return result
 
-    return run_stage(project, stage, make, prepare=project.load_trajectory, progress=progress)
+    return run_stage(project, stage, make, prepare=project.count_profile_points, progress=progress)
 
 
-@dataclass(frozen=True)
-class _Judge:
-    """What every block needs."""
+@dataclass(frozen=True, eq=False)
+class _Job:
+    """What every block needs, wherever it is worked on."""
 
-    trajectory: Trajectory
+    project: Project
+    motion: str
+    """Digest of the motion stage."""
     rig: Rig
     axis: Axis
     rules: Sequence[AbstractOutlierRule]
 
-    def place(self, block: ProfileBlock) -> CloudPart:
+    def place(self, block: Block) -> list[CloudPart]:
         """Carry a block's points to the world, and tell which of them are no surface."""
-        profile, is_body = block.profile, block.is_body
+        trajectory = _load_trajectory(self.project.root, self.motion)
+        profile, sizes = self._load(block, trajectory)
+        own = slice(sizes[0], len(profile) - sizes[-1])
         if not len(profile):
-            return CloudPart.whole(empty_cloud())
-        cloud = merge_profiles(profile, self.trajectory, axis=self.axis)
-        cameras = self.trajectory.transform(np.zeros_like(profile.points), profile.time)
+            return [CloudPart.whole(PointCloud.empty()) for _ in block.parts]
+        cloud = merge_profiles(profile, trajectory, axis=self.axis)
+        cameras = trajectory.transform(np.zeros_like(profile.points), profile.time)
         found = find_outliers(SeenCloud(cloud, cameras), self.rules)
         taken_out = np.zeros(len(cloud), np.uint8)
         for number, which in enumerate(found.values(), 1):
             taken_out[which] = number
-        common = spread_common(profile[is_body], self.rig)
-        body = replace(cloud[is_body], sigma_common=common)
-        return CloudPart(body, taken_out[is_body], tuple(found))
+        common = spread_common(profile[own], trajectory, self.rig)
+        placed = CloudPart(replace(cloud[own], sigma_common=common), taken_out[own], tuple(found))
+        ends = np.cumsum(sizes[1:-1]).tolist()
+        return [placed[end - size : end] for size, end in zip(sizes[1:-1], ends, strict=True)]
+
+    def _load(self, block: Block, trajectory: Trajectory) -> tuple[Profile, list[int]]:
+        """Load a block; gives the sizes of what lies before it, of its parts, of what follows."""
+        before, after = (self._join(numbers, trajectory) for numbers in (block.before, block.after))
+        if len(before) > HALO:
+            before = before[before.frame > before.frame[-HALO]]
+        if len(after) > HALO:
+            after = after[after.frame < after.frame[HALO]]
+        parts = [before, *(self._join([one], trajectory) for one in block.parts), after]
+        return Profile.concatenate(parts), list(map(len, parts))
+
+    def _join(self, numbers: Sequence[int], trajectory: Trajectory) -> Profile:
+        parts = (self.project.load_profile_part(number) for number in numbers)
+        return Profile.concatenate([part[trajectory.has(part.time)] for part in parts])
 
 
-def _make_parts(project: Project, judge: _Judge, block: int, progress: Progress) -> None:
-    """Make the parts that are missing, a block at a time."""
-    there, waiting = {*project.find_cloud_parts()}, sorted(project.find_profile_parts())
-    for done, one in enumerate(cut_blocks(project.load_placed_parts(), block=block)):
-        progress("cloud", done, None)
-        numbers, waiting = waiting[: len(one.sizes)], waiting[len(one.sizes) :]
-        if there.issuperset(numbers):
-            continue
-        placed, ends = judge.place(one), np.cumsum(one.sizes)
-        for number, size, end in zip(numbers, one.sizes, ends.tolist(), strict=True):
-            project.save_cloud_part(number, placed[end - size : end])
+@lru_cache(maxsize=1)
+def _load_trajectory(root: Path, digest: str) -> Trajectory:
+    """Read the poses once a worker; the digest tells whether they are still the same."""
+    del digest
+    return Project(root).load_trajectory()
 
 
-def _count(project: Project, rules: Sequence[AbstractOutlierRule]) -> CloudResult:
-    points, found = 0, Counter({rule.cause: 0 for rule in rules})
-    for number in project.find_cloud_parts():
-        part = project.load_cloud_part(number)
+def _make_parts(
+    job: _Job, blocks: Sequence[Block], executor: AbstractExecutor, progress: Progress
+) -> CloudResult:
+    """Make the parts that are missing, a block at a time; this process alone writes."""
+    project, counts = job.project, Counter({rule.cause: 0 for rule in job.rules})
+    there, points = {*project.find_cloud_parts()}, 0
+    missing = [one for one in blocks if not there.issuperset(one.parts)]
+    whole = [number for one in blocks if one not in missing for number in one.parts]
+
+    def count(part: CloudPart) -> None:
+        nonlocal points
         points += int(part.stays.sum())
-        found.update({rule.cause: part.count(rule.cause) for rule in rules})
-    return CloudResult(points, found.total(), dict(found))
+        counts.update({rule.cause: part.count(rule.cause) for rule in job.rules})
+
+    with closing(executor.map(job.place, missing)) as made:
+        for done, (one, parts) in enumerate(zip(missing, made, strict=True), 1):
+            for number, part in zip(one.parts, parts, strict=True):
+                project.save_cloud_part(number, part)
+                count(part)
+            progress("cloud", done, len(missing))
+    for number in whole:
+        count(project.load_cloud_part(number))
+    return CloudResult(points, counts.total(), dict(counts))

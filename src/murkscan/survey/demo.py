@@ -101,7 +101,7 @@ def _scan(
     rig_file = out / "recording" / "rig.toml"
     rig = load_rig(rig_file)
     recording = open_recording(out / "recording" / "frames", wavelength=rig.wavelength)
-    motion = ConstantSpeed(_SPEED, rig.lasers[0].axis)
+    motion = ConstantSpeed(_SPEED, rig.lasers[0].axis, sigma=0.0)  # as it was simulated
     project = scan(
         recording,
         rig,

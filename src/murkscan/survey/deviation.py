@@ -162,7 +162,7 @@ def _as_measurement(search: DentSearch, reference: Reference | None) -> Measurem
 def _save_points(files: StageFiles, sample: Sample, deviation: Deviation) -> int:
     points, sigma = sample.cloud.points, sigma_of_points(sample, deviation)
     with files.making(f"{files.label}.ply") as path:
-        save_deviation_ply(path, points, deviation, sigma)
+        save_deviation_ply(path, points, deviation, sigma, sample.rows)
     with files.making(f"{files.label}.csv") as path:
         return save_deviation_csv(path, points, deviation.values, sigma)
 

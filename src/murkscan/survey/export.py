@@ -1,9 +1,11 @@
 """Write a scan's cloud in another format, in streams."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 from ..cloud import thin_clouds
+from ..distribute import AbstractExecutor, Threads
 from ..errors import InputError
 from ..io.cloud_files import check_cloud_suffix, writing_cloud_file
 from ..project import CLOUD, STAGES, Project
@@ -12,7 +14,12 @@ from .progress import Progress, silent
 
 
 def export_cloud(
-    project: Project, path: Path, *, voxel: float | None = None, progress: Progress = silent
+    project: Project,
+    path: Path,
+    *,
+    voxel: float | None = None,
+    executor: AbstractExecutor | None = None,
+    progress: Progress = silent,
 ) -> int:
     """Write the cloud of a scan to a file, with bounded memory.
 
@@ -20,6 +27,8 @@ def export_cloud(
         project: A scan with a finished cloud stage.
         path: The file; its suffix is one of .ply, .las, .laz, .e57, .xyz and .csv.
         voxel: Edge of the voxels to thin to [m]; None writes all points.
+        executor: Who reads and checks the cloud's parts; threads unless given. The file is the
+            same.
         progress: Told how many points are written.
 
     Returns:
@@ -35,7 +44,7 @@ def export_cloud(
     check_export(path)
     if count == 0:
         raise InputError(f"The cloud of {project.root} has no points; there is nothing to export.")
-    blocks = _Blocks(project)
+    blocks = _Blocks(project, executor or Threads())
     written = 0
     with writing_cloud_file(path) as write:
         for block in blocks if voxel is None else thin_clouds(blocks, voxel):
@@ -71,11 +80,12 @@ def require_outside_stages(path: Path) -> None:
             )
 
 
+@dataclass(frozen=True)
 class _Blocks:
     """The blocks of a scan's cloud; they can be gone through again."""
 
-    def __init__(self, project: Project) -> None:
-        self._project = project
+    project: Project
+    executor: AbstractExecutor
 
     def __iter__(self) -> Iterator[PointCloud]:
-        return self._project.iterate_cloud()
+        return self.executor.map(self.project.load_kept_part, self.project.find_cloud_parts())

@@ -1,11 +1,17 @@
 """Make a surface from a scan's cloud."""
 
+from collections.abc import Iterable, Iterator
+from contextlib import closing
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+import numpy as np
+
+from ..distribute import AbstractExecutor, Threads
 from ..io.mesh_files import check_mesh_suffix, save_mesh
-from ..mesh import AbstractMesher, AbstractPaint, ByDepth, close_holes, decimate
+from ..mesh import AbstractMesher, AbstractPaint, ByDepth, close_holes, decimate, join_tiles
 from ..project import CLOUD, MESH, MeshResult, Project, describe, find_trajectory, is_merged
+from ..project.blocks import BLOCK, HALO, Block, cut_blocks
 from ..types.cloud import PointCloud
 from ..types.mesh import Mesh
 from .export import require_outside_stages
@@ -30,6 +36,8 @@ def build_mesh(
     mesher: AbstractMesher,
     *,
     finish: Finish | None = None,
+    block: int = BLOCK,
+    executor: AbstractExecutor | None = None,
     progress: Progress = silent,
 ) -> MeshResult:
     """Run the mesh stage.
@@ -38,7 +46,9 @@ def build_mesh(
         project: A scan with a finished cloud stage.
         mesher: The way to make a surface.
         finish: What is done to it afterwards; it is coloured by depth unless given.
-        progress: Told when it begins and when it is done.
+        block: Points of a tile, about; the result depends on it.
+        executor: Who makes tiles; threads unless given. The result is the same.
+        progress: Told how many tiles are done.
 
     Returns:
         No vertices and faces for a cloud that has no two neighbouring profiles.
@@ -57,9 +67,9 @@ def build_mesh(
     )
 
     def prepare() -> tuple[Mesh, MeshResult]:
-        cloud = project.load_cloud()
         painted = replace(asked, paint=_towards(asked.paint, project))
-        return _finish(mesher.mesh_passes(_split(project, cloud)), cloud, painted)
+        mesh = _make_surface(project, mesher, block, executor or Threads(), progress)
+        return _finish(mesh, project, painted)
 
     def make(made: tuple[Mesh, MeshResult]) -> MeshResult:
         mesh, result = made
@@ -99,17 +109,60 @@ def check_mesh_export(path: Path) -> None:
     require_outside_stages(path)
 
 
-def _split(project: Project, cloud: PointCloud) -> list[PointCloud]:
-    """Give the points of each pass of a merged cloud, those without any left out; else all."""
-    if not is_merged(project):
-        return [cloud]
-    merged = project.finished(CLOUD).result
+def _make_surface(
+    project: Project,
+    mesher: AbstractMesher,
+    block: int,
+    executor: AbstractExecutor,
+    progress: Progress,
+) -> Mesh:
+    """Make the surface in tiles where that can be, else as a whole."""
+    if is_merged(project):
+        return _join_passes(project, mesher)
+    if not mesher.works_in_tiles:
+        return mesher.mesh(project.load_cloud())
+    blocks, job = cut_blocks(project.count_cloud_points(), block=block), _TileJob(project, mesher)
+
+    def tell(tiles: Iterable[Mesh]) -> Iterator[Mesh]:
+        for done, tile in enumerate(tiles, 1):
+            progress("mesh", done, len(blocks))
+            yield tile
+
+    with closing(executor.map(job.make, blocks)) as tiles:
+        return join_tiles(tell(tiles))
+
+
+def _join_passes(project: Project, mesher: AbstractMesher) -> Mesh:
+    """Make one surface of the passes of a merged cloud."""
+    cloud, merged = project.load_cloud(), project.finished(CLOUD).result
     owner = merged.number_passes(cloud.frame)
-    parts = [cloud[owner == number] for number in range(len(merged.passes))]
-    return [part for part in parts if len(part)]
+    rows = [np.flatnonzero(owner == number) for number in range(len(merged.passes))]
+    mesh = mesher.mesh_passes([cloud[some] for some in rows if len(some)])
+    return replace(mesh, points=np.concatenate(rows)[mesh.points])
 
 
-def _finish(mesh: Mesh, cloud: PointCloud, finish: Finish) -> tuple[Mesh, MeshResult]:
+@dataclass(frozen=True, eq=False)
+class _TileJob:
+    """What every tile needs, wherever it is made."""
+
+    project: Project
+    mesher: AbstractMesher
+
+    def make(self, block: Block) -> Mesh:
+        """Make the tile of a block's points."""
+        before, own, after = (
+            PointCloud.concatenate([self.project.load_kept_part(number) for number in numbers])
+            for numbers in (block.before, block.parts, block.after)
+        )
+        if len(before) > HALO:
+            before = before[before.frame > before.frame[-HALO]]
+        if len(after) > HALO:
+            after = after[after.frame < after.frame[HALO]]
+        cloud, start = PointCloud.concatenate([before, own, after]), len(before)
+        return self.mesher.mesh_tile(cloud, slice(start, start + len(own)))
+
+
+def _finish(mesh: Mesh, project: Project, finish: Finish) -> tuple[Mesh, MeshResult]:
     closed = left = None
     if finish.largest_hole is not None:
         filled = close_holes(mesh, largest=finish.largest_hole)
@@ -117,7 +170,8 @@ def _finish(mesh: Mesh, cloud: PointCloud, finish: Finish) -> tuple[Mesh, MeshRe
     if finish.faces is not None:
         mesh = decimate(mesh, faces=finish.faces)
     if finish.paint is not None and len(mesh.faces):
-        mesh = replace(mesh, colours=finish.paint.paint(mesh, cloud))
+        signal = np.concatenate([part.signal for part in project.iterate_cloud()])
+        mesh = replace(mesh, colours=finish.paint.paint(mesh, signal))
     return mesh, MeshResult(
         vertices=len(mesh.vertices),
         faces=len(mesh.faces),

@@ -42,6 +42,7 @@ def follow_motion(project: Project, motion: AbstractMotion) -> MotionResult:
             duration=float(np.ptp(times.time)),
             length=float(steps.sum()),
             remarks=motion.remarks(times.time),
+            accuracy="" if trajectory.errors is None else motion.accuracy,
             carries_mount=motion.carries_mount,
             start=motion.start,
         )

@@ -8,6 +8,7 @@ from ..project import EXTRACT, MOTION, STAGES, Project, ScanRecord, is_merged, l
 from ..project.origin import name_recording
 from ..report import Recorded
 from ..types.frame_times import FrameTimes
+from .common_part import list_unstated
 
 _SINCE = 1e8
 """A log's time above this counts seconds since 1970; below it, a clock of its own [s]."""
@@ -29,6 +30,8 @@ def tell_recording(project: Project, scan: ScanRecord) -> Recorded:
         is_timed=recording.is_timed,
         skips=list(extracted.skips),
         remarks=(*extracted.remarks, *motion.remarks),
+        motion=motion.accuracy,
+        unstated=list_unstated(project),
         attenuation=extracted.attenuation,
         path=recording.path,
         began=when_began(project.load_frame_times(), motion.start),

@@ -87,7 +87,7 @@ def _in_short(summary: ScanSummary) -> ReportResult:
     coverage, trust = summary.coverage, summary.trust
     missing = {} if coverage is None else coverage.missing
     worst = max(missing, key=lambda cause: missing[cause], default=None)
-    typical = None if trust is None else trust.total.median
+    typical, own = (None, None) if trust is None else (trust.total.median, trust.independent.median)
     return ReportResult(
         frames=summary.num_frames,
         skipped=summary.recorded.num_skipped,
@@ -96,21 +96,23 @@ def _in_short(summary: ScanSummary) -> ReportResult:
         covered=None if coverage is None else coverage.covered / coverage.mapped,
         largest_gap=None if worst is None or not missing[worst] else worst,
         half_width=None if typical is None else AT_95 * typical,
-        is_common_known=trust is not None and trust.common is not None,
+        own_half_width=None if own is None else AT_95 * own,
+        unstated=tuple(summary.recorded.unstated),
         steps_with_advice=_with_advice(summary.steps),
     )
 
 
 def _merged_in_short(summary: MergedSummary) -> ReportResult:
     trust, steps = summary.trust, [step for one in summary.rigs for step in one.steps]
-    typical = None if trust is None else trust.total.median
+    typical, own = (None, None) if trust is None else (trust.total.median, trust.independent.median)
     return ReportResult(
         frames=sum(one.frames[1] - one.frames[0] + 1 for one in summary.passes),
         skipped=0,
         frames_without_stripe=0,
         points=summary.model.points,
         half_width=None if typical is None else AT_95 * typical,
-        is_common_known=not summary.unstated,
+        own_half_width=None if own is None else AT_95 * own,
+        unstated=tuple(f"of {path} no rig with a covariance is known" for path in summary.unstated),
         steps_with_advice=_with_advice(steps),
     )
 

@@ -5,7 +5,7 @@ from jaxtyping import Float
 
 from ..errors import NotEnoughData
 from ..measure import Sample, Selection
-from ..optics.seen_points import look_back, shift_points
+from ..optics.seen_points import look_back, shifts_in_world
 from ..project import CLOUD, Project, is_merged, load_moving_rig
 from ..project.merged import load_merged_errors
 from ..types.arrays import Indices, Vector
@@ -47,13 +47,12 @@ def _know_scan(project: Project, cloud: PointCloud) -> Sample:
     profile = Profile.concatenate(list(project.load_kept_parts()))
 
     def shifts(some: Indices) -> Float[np.ndarray, "n 3 modes"]:
-        one = profile[some]
-        return shift_points(one.pixels, one.laser, one.time, trajectory, rig)
+        return shifts_in_world(profile[some], trajectory, rig)
 
     return Sample.from_cloud(
         cloud,
         sight=look_back(cloud.points, cloud.laser, profile.time, trajectory, rig),
-        shifts=shifts if rig.covariance.names else None,
+        shifts=shifts if rig.covariance.names or trajectory.errors is not None else None,
     )
 
 

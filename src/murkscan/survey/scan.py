@@ -62,7 +62,7 @@ def scan(
         frames: Whether to write one cloud a frame for more than 500 frames, too.
         rig_file: The file of the rig, for what the report says of its calibration.
         command: The words that were typed after `murkscan`, for the report.
-        executor: Who finds stripes and triangulates; threads unless given. The result is the same.
+        executor: Who does the work; threads unless given. The result is the same.
         progress: Told how far each stage is.
 
     Returns:
@@ -89,8 +89,8 @@ def scan(
         )
         triangulate_stripes(project, rig, method, executor=executor, progress=progress)
         follow_motion(project, motion)
-        build_cloud(project, rig, rules=rules, frames=frames, progress=progress)
-        build_mesh(project, mesher, progress=progress)
+        build_cloud(project, rig, rules=rules, frames=frames, executor=executor, progress=progress)
+        build_mesh(project, mesher, executor=executor, progress=progress)
         draw_views(project, progress=progress)
         write_report(project, progress=progress)
     return project

@@ -9,8 +9,9 @@ from ..errors import InputError, MissingResult
 from ..io.deviation_files import load_deviation_ply
 from ..project import CLOUD, MEASURE, MESH, Project, digest, find_frame_times, find_trajectory
 from ..project.origin import name_recording
+from ..types.arrays import Indices
 from ..types.cloud import PointCloud
-from ..view import Layer, Model, choose_fairly, model_of_scan
+from ..view import Layer, Model, choose_fairly, cluster_vertices, model_of_scan
 from .measured import measurement_files
 from .shift_field import trace_shift_field
 
@@ -34,11 +35,16 @@ def load_model(project: Project, *, most: int, deviation: str = DEVIATION) -> Mo
     if total == 0:
         return None
     recording = project.load_scan().recording
+    mesh = cluster_vertices(project.load_mesh(), most) if has_surface(project) else None
+    rows = choose_fairly(total, most)
+    if mesh is not None and mesh.points is not None:
+        rows = np.union1d(rows, mesh.points)
     model = model_of_scan(
         title_of(project),
-        choose_points(project, most),
+        load_rows(project, rows),
+        rows=rows,
         num_points=total,
-        mesh=project.load_mesh() if has_surface(project) else None,
+        mesh=mesh,
         trajectory=find_trajectory(project),
         frames=find_frame_times(project),
         is_timed=recording is not None and recording.is_timed,
@@ -47,13 +53,13 @@ def load_model(project: Project, *, most: int, deviation: str = DEVIATION) -> Mo
     )
     if deviation_digest(project, deviation) is None:
         return model
-    points, values = load_deviation_ply(
+    points, values, rows = load_deviation_ply(
         measurement_files(project, deviation).checked(f"{deviation}.ply")
     )
     if len(points) == 0:
         return model
     layer = Layer("deviation", values * 1e3, "mm", "RdBu_r", is_signed=True)
-    return model.with_layer(layer, at=points)
+    return model.with_layer(layer, rows)
 
 
 def folder_of(project: Project) -> str:
@@ -96,10 +102,14 @@ def deviation_digest(project: Project, name: str) -> str | None:
 
 def choose_points(project: Project, most: int) -> PointCloud:
     """Load a fair choice of a cloud that may be larger than memory."""
-    total = project.finished(CLOUD).result.points
-    chosen, start, parts = choose_fairly(total, most), 0, []
+    return load_rows(project, choose_fairly(project.finished(CLOUD).result.points, most))
+
+
+def load_rows(project: Project, rows: Indices) -> PointCloud:
+    """Load some points of a cloud by their numbers, in increasing order, part by part."""
+    start, parts = 0, []
     for block in project.iterate_cloud():
-        low, high = np.searchsorted(chosen, [start, start + len(block)])
-        parts.append(block[chosen[low:high] - start])
+        low, high = np.searchsorted(rows, [start, start + len(block)])
+        parts.append(block[rows[low:high] - start])
         start += len(block)
     return PointCloud.concatenate(parts)

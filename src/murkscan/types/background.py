@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Bool, Float32
 
 from .arrays import Scalars
+from .short_repr import ShortRepr
 
 
 @dataclass(frozen=True)
@@ -71,8 +72,8 @@ class StripeShape:
     and all that a picture has of this width beside; that of the noise alone unless given."""
 
 
-@dataclass(frozen=True, eq=False)
-class FixedPattern:
+@dataclass(frozen=True, eq=False, repr=False)
+class FixedPattern(ShortRepr):
     """What is fixed to the picture and not to the scene: rim, dirt, scratches, ghosts, text."""
 
     first_row: int
@@ -105,8 +106,8 @@ class Attenuation:
         return self.low > 0.1 * self.high
 
 
-@dataclass(frozen=True, eq=False)
-class Background:
+@dataclass(frozen=True, eq=False, repr=False)
+class Background(ShortRepr):
     """What an extractor has learnt from a recording before it looks for the stripe."""
 
     noise: float

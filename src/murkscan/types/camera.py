@@ -7,14 +7,15 @@ import numpy as np
 from ..errors import InputError
 from .arrays import Matrix3, Scalars
 from .port import FlatPort, Port
+from .short_repr import ShortRepr
 
 
 def _no_distortion() -> Scalars:
     return np.zeros(5)
 
 
-@dataclass(frozen=True, eq=False)
-class Camera:
+@dataclass(frozen=True, eq=False, repr=False)
+class Camera(ShortRepr):
     """Intrinsics: how a ray in the camera frame becomes a pixel.
 
     The frame has x right, y down, z forward and its origin at the optical centre.

@@ -1,12 +1,10 @@
 """All points of a scan in one frame."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .arrays import (
-    Indices,
     Mask,
     Normals,
     Points,
@@ -16,13 +14,14 @@ from .arrays import (
     SmallNumbers,
 )
 from .pose import Pose
+from .table import Table
 
 FARTHEST = 1e11
 """Coordinates beyond which nothing lies, in whatever unit: the Earth's girth is 4e10 mm."""
 
 
-@dataclass(frozen=True, eq=False)
-class PointCloud:
+@dataclass(frozen=True, eq=False, repr=False)
+class PointCloud(Table):
     """Surface points in the world frame; one a row."""
 
     points: Points
@@ -48,10 +47,6 @@ class PointCloud:
     """Number of the point among those of its scan line, from 0; with laser, frame and scan line it
     says which centre of which stripe the point is."""
 
-    def __len__(self) -> int:
-        """Count the points."""
-        return len(self.points)
-
     def is_sound(self) -> Mask:
         """Tell which points can be: at a place, with a normal, and with deviations not below 0.
 
@@ -65,32 +60,3 @@ class PointCloud:
         """Lay the points elsewhere."""
         normals = (self.normals @ target_from_world.rotation.T).astype(np.float32)
         return replace(self, points=target_from_world @ self.points, normals=normals)
-
-    @classmethod
-    def concatenate(cls, clouds: Sequence["PointCloud"]) -> "PointCloud":
-        """Put clouds one after another; none make a cloud of length 0."""
-        parts = [empty_cloud(), *clouds]
-        return cls(
-            *(np.concatenate([getattr(part, c.name) for part in parts]) for c in fields(cls))
-        )
-
-    def __getitem__(self, which: Mask | Indices | slice) -> "PointCloud":
-        """Pick some of the points."""
-        return PointCloud(*(getattr(self, column.name)[which] for column in fields(self)))
-
-
-def empty_cloud() -> PointCloud:
-    """Make a cloud without points."""
-    ratio, number = np.zeros(0, np.float32), np.zeros(0, np.int32)
-    return PointCloud(
-        points=np.zeros((0, 3)),
-        normals=np.zeros((0, 3), np.float32),
-        signal=ratio,
-        posterior=ratio,
-        sigma=ratio,
-        sigma_common=ratio,
-        frame=number,
-        scan_line=number,
-        laser=np.zeros(0, np.uint8),
-        branch=np.zeros(0, np.uint8),
-    )

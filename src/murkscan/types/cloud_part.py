@@ -6,10 +6,11 @@ import numpy as np
 
 from .arrays import Mask, SmallNumbers
 from .cloud import PointCloud
+from .short_repr import ShortRepr
 
 
-@dataclass(frozen=True, eq=False)
-class CloudPart:
+@dataclass(frozen=True, eq=False, repr=False)
+class CloudPart(ShortRepr):
     """The points of one part of the profiles in the world frame, one for each that has a pose."""
 
     cloud: PointCloud

@@ -7,10 +7,11 @@ from jaxtyping import Float
 
 from .arrays import Points, Scalars, Vector
 from .plane import span_plane
+from .short_repr import ShortRepr
 
 
-@dataclass(frozen=True, eq=False)
-class Cylinder:
+@dataclass(frozen=True, eq=False, repr=False)
+class Cylinder(ShortRepr):
     """All points at one distance from a straight line."""
 
     point: Vector

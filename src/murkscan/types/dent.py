@@ -4,10 +4,11 @@ from dataclasses import dataclass
 
 from .arrays import Vector
 from .quantity import Quantity
+from .short_repr import ShortRepr
 
 
-@dataclass(frozen=True, eq=False)
-class Dent:
+@dataclass(frozen=True, eq=False, repr=False)
+class Dent(ShortRepr):
     """A dent, or a bump: its depth is then negative."""
 
     place: Vector

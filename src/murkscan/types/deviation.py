@@ -3,10 +3,11 @@
 from dataclasses import dataclass
 
 from .arrays import Directions, Mask, Scalars
+from .short_repr import ShortRepr
 
 
-@dataclass(frozen=True, eq=False)
-class Deviation:
+@dataclass(frozen=True, eq=False, repr=False)
+class Deviation(ShortRepr):
     """Signed distance of each point of a scan from a reference; one a row."""
 
     values: Scalars

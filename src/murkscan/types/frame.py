@@ -3,10 +3,11 @@
 from dataclasses import dataclass
 
 from .arrays import Image, Scalars
+from .short_repr import ShortRepr
 
 
-@dataclass(frozen=True, eq=False)
-class Frame:
+@dataclass(frozen=True, eq=False, repr=False)
+class Frame(ShortRepr):
     """One picture: a whole one, or one field of an interlaced one.
 
     A field has every second row of the full frame, exposed at its own time; nothing is

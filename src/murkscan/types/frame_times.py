@@ -3,10 +3,11 @@
 from dataclasses import dataclass
 
 from .arrays import FrameNumbers, Scalars
+from .short_repr import ShortRepr
 
 
-@dataclass(frozen=True, eq=False)
-class FrameTimes:
+@dataclass(frozen=True, eq=False, repr=False)
+class FrameTimes(ShortRepr):
     """The frames that were read, with or without a stripe; one a row, in order."""
 
     frame: FrameNumbers

@@ -10,14 +10,15 @@ from ..errors import InputError
 from .arrays import Indices, Mask, Scalars, Vector
 from .plane import Plane
 from .port import FlatPort, Port
+from .short_repr import ShortRepr
 
 Axis = Literal["x", "y"]
 """A camera axis."""
 
 
 @final
-@dataclass(frozen=True, eq=False)
-class Fan:
+@dataclass(frozen=True, eq=False, repr=False)
+class Fan(ShortRepr):
     r"""Rays from one point that spread in a plane, and perhaps leave through a window.
 
     Seen with the tangent, which runs along the line, upwards::
@@ -94,8 +95,8 @@ class Fan:
         return Plane.through(self.origin, np.cross(self.direction, self.tangent))
 
 
-@dataclass(frozen=True, eq=False)
-class FanCoordinates:
+@dataclass(frozen=True, eq=False, repr=False)
+class FanCoordinates(ShortRepr):
     """Where points lie with respect to a fan; one a row, NaN behind the start of their ray."""
 
     angle: Scalars
@@ -110,8 +111,8 @@ class FanCoordinates:
         return FanCoordinates(self.angle[which], self.range[which], self.distance[which])
 
 
-@dataclass(frozen=True, eq=False)
-class Laser:
+@dataclass(frozen=True, eq=False, repr=False)
+class Laser(ShortRepr):
     """A sheet of laser light, in the camera frame.
 
     The paper describes it by a baseline b and an angle θ::

@@ -4,10 +4,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from .quantity import Quantity
+from .short_repr import ShortRepr
 
 
-@dataclass(frozen=True, eq=False)
-class Measurement:
+@dataclass(frozen=True, eq=False, repr=False)
+class Measurement(ShortRepr):
     """Numbers that belong together, each with its uncertainty."""
 
     kind: str

@@ -2,11 +2,12 @@
 
 from dataclasses import dataclass
 
-from .arrays import Colours, FaceMask, Faces, Points
+from .arrays import Colours, FaceMask, Faces, Indices, Points
+from .short_repr import ShortRepr
 
 
-@dataclass(frozen=True, eq=False)
-class Mesh:
+@dataclass(frozen=True, eq=False, repr=False)
+class Mesh(ShortRepr):
     """Triangles between vertices, in the world frame."""
 
     vertices: Points
@@ -17,3 +18,5 @@ class Mesh:
     """Which triangles close a hole, so that nothing was measured there; None: no such triangle."""
     colours: Colours | None = None
     """Red, green and blue of each vertex, as a screen shows them; None: it has no colours."""
+    points: Indices | None = None
+    """Row of the cloud's point that each vertex is or stands for; None: it was made of none."""

@@ -7,10 +7,11 @@ from jaxtyping import Float
 
 from ..errors import InputError
 from .arrays import Scalars
+from .short_repr import ShortRepr
 
 
-@dataclass(frozen=True, eq=False)
-class Readings:
+@dataclass(frozen=True, eq=False, repr=False)
+class Readings(ShortRepr):
     """What one instrument measured, each time at its own time."""
 
     times: Scalars
@@ -77,8 +78,8 @@ class NavigationAccuracy:
                 )
 
 
-@dataclass(frozen=True, eq=False)
-class Navigation:
+@dataclass(frozen=True, eq=False, repr=False)
+class Navigation(ShortRepr):
     """Measurements of a vehicle's way, with their accuracy. What is None was not measured.
 
     The world is north, east, down; the vehicle's axes are forward, starboard, down.

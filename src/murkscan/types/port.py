@@ -12,6 +12,7 @@ import numpy as np
 
 from ..errors import InputError
 from .arrays import Vector
+from .short_repr import ShortRepr
 
 
 @final
@@ -30,8 +31,8 @@ class Layer:
 
 
 @final
-@dataclass(frozen=True, eq=False)
-class FlatPort:
+@dataclass(frozen=True, eq=False, repr=False)
+class FlatPort(ShortRepr):
     """Plane layers one after another; a flat window has one.
 
     ::
@@ -62,8 +63,8 @@ class FlatPort:
 
 
 @final
-@dataclass(frozen=True, eq=False)
-class DomePort:
+@dataclass(frozen=True, eq=False, repr=False)
+class DomePort(ShortRepr):
     """A shell between two concentric spheres, around the optical centre.
 
     Rays through the middle of a dome are not bent; the farther the optical centre lies from it,

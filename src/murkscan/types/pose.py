@@ -7,10 +7,11 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from .arrays import Matrix3, Points, Quaternions, Vector
+from .short_repr import ShortRepr
 
 
-@dataclass(frozen=True, eq=False)
-class Pose:
+@dataclass(frozen=True, eq=False, repr=False)
+class Pose(ShortRepr):
     """A rotation, then a translation."""
 
     rotation: Matrix3

@@ -1,15 +1,13 @@
 """The laser line in space."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
-import numpy as np
-
-from .arrays import FrameNumbers, Indices, Mask, Pixels, Points, Ratios, Scalars, SmallNumbers
+from .arrays import FrameNumbers, Pixels, Points, Ratios, Scalars, SmallNumbers
+from .table import Table
 
 
-@dataclass(frozen=True, eq=False)
-class Profile:
+@dataclass(frozen=True, eq=False, repr=False)
+class Profile(Table):
     """Surface points of one frame, or of several one after another; one a row."""
 
     frame: FrameNumbers
@@ -30,35 +28,3 @@ class Profile:
     """Probability that this is the surface."""
     branch: SmallNumbers
     """Number of each point among those of its scan line, from 0, the strongest first."""
-
-    def __len__(self) -> int:
-        """Count the points."""
-        return len(self.frame)
-
-    @classmethod
-    def concatenate(cls, profiles: Sequence["Profile"]) -> "Profile":
-        """Put profiles one after another; none make a profile of length 0."""
-        parts = [empty_profile(), *profiles]
-        return cls(
-            *(np.concatenate([getattr(part, c.name) for part in parts]) for c in fields(cls))
-        )
-
-    def __getitem__(self, which: Mask | Indices | slice) -> "Profile":
-        """Pick some of the points."""
-        return Profile(*(getattr(self, column.name)[which] for column in fields(self)))
-
-
-def empty_profile() -> Profile:
-    """Make the profile of a frame that shows no stripe."""
-    ratio = np.zeros(0, np.float32)
-    return Profile(
-        frame=np.zeros(0, np.uint32),
-        time=np.zeros(0),
-        laser=np.zeros(0, np.uint8),
-        pixels=np.zeros((0, 2)),
-        points=np.zeros((0, 3)),
-        sigma=ratio,
-        signal=ratio,
-        posterior=ratio,
-        branch=np.zeros(0, np.uint8),
-    )

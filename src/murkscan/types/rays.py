@@ -3,10 +3,11 @@
 from dataclasses import dataclass
 
 from .arrays import Directions, Points
+from .short_repr import ShortRepr
 
 
-@dataclass(frozen=True, eq=False)
-class Rays:
+@dataclass(frozen=True, eq=False, repr=False)
+class Rays(ShortRepr):
     """Half lines, one a row."""
 
     origins: Points

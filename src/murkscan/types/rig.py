@@ -8,11 +8,12 @@ from .laser import Laser
 from .navigation import NavigationAccuracy
 from .pose import Pose
 from .rig_covariance import RigCovariance
+from .short_repr import ShortRepr
 from .water import Water
 
 
-@dataclass(frozen=True, eq=False)
-class Rig:
+@dataclass(frozen=True, eq=False, repr=False)
+class Rig(ShortRepr):
     """A camera and its lasers, rigidly joined."""
 
     camera: Camera

@@ -8,14 +8,15 @@ from jaxtyping import Float
 
 from ..errors import InputError
 from .arrays import Scalars
+from .short_repr import ShortRepr
 
 
 def _no_matrix() -> Float[np.ndarray, "n n"]:
     return np.zeros((0, 0))
 
 
-@dataclass(frozen=True, eq=False)
-class RigCovariance:
+@dataclass(frozen=True, eq=False, repr=False)
+class RigCovariance(ShortRepr):
     """Covariance of some of a rig's parameters; the others are taken as exact.
 
     Names follow rig.toml; units are px, m, rad and none. `murkscan.optics.perturb_rig` says what a

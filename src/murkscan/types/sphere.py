@@ -6,10 +6,11 @@ import numpy as np
 from jaxtyping import Float
 
 from .arrays import Points, Scalars, Vector
+from .short_repr import ShortRepr
 
 
-@dataclass(frozen=True, eq=False)
-class Sphere:
+@dataclass(frozen=True, eq=False, repr=False)
+class Sphere(ShortRepr):
     """All points at one distance from a centre."""
 
     centre: Vector

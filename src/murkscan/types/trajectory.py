@@ -10,10 +10,11 @@ from scipy.spatial.transform import Rotation, Slerp
 from ..errors import InputError
 from .arrays import Mask, Points, Quaternions, Scalars, Vector
 from .pose import Pose
+from .short_repr import ShortRepr
 
 
-@dataclass(frozen=True, eq=False)
-class Trajectory:
+@dataclass(frozen=True, eq=False, repr=False)
+class Trajectory(ShortRepr):
     """Poses world_from_camera at increasing times, at least one; between them it interpolates."""
 
     times: Scalars

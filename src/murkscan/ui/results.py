@@ -162,15 +162,12 @@ def _tell_coverage(result: ReportResult) -> list[str]:
 
 
 def _tell_trust(result: ReportResult) -> list[str]:
-    if result.half_width is None:
+    if result.half_width is None or result.own_half_width is None:
         return []
-    line = f"a typical point is known to ± {1e3 * result.half_width:.2g} mm (95 %)"
-    if result.is_common_known:
-        return [f"{line}, noise and calibration together"]
-    return [
-        f"{line} by its own noise; what the calibration adds is unknown, since the rig file states "
-        "no covariance: `murkscan calibrate` finds it"
-    ]
+    line = f"a typical point is known to ± {1e3 * result.own_half_width:.2g} mm (95 %) by its noise"
+    if result.half_width > result.own_half_width:
+        line += f", to ± {1e3 * result.half_width:.2g} mm with what calibration and motion add"
+    return [line, *(text[0].lower() + text[1:].rstrip(".") for text in result.unstated)]
 
 
 def _tell_calibration(result: ReportResult) -> list[str]:

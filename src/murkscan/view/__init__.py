@@ -15,6 +15,7 @@ from .render import render as render
 from .shift_field import ShiftField as ShiftField
 from .shift_field import fit_shift_field as fit_shift_field
 from .thinned import choose_fairly as choose_fairly
+from .thinned import cluster_vertices as cluster_vertices
 from .turn import TURN as TURN
 from .turn import draw_turn as draw_turn
 from .viewer_page import render_viewer as render_viewer

@@ -2,8 +2,8 @@
 
 import numpy as np
 from jaxtyping import Int
-from scipy.spatial import KDTree
 
+from ..errors import InputError
 from ..types.arrays import Indices, SignedFrameNumbers
 from ..types.cloud import PointCloud
 from ..types.frame_times import FrameTimes
@@ -19,6 +19,7 @@ MOST = 2_000_000
 
 Corners = Int[np.ndarray, "corners"]
 Sources = Int[np.ndarray, "sources"]
+Rows = Int[np.ndarray, "rows"]
 
 _ROUNDING = 1 + 1e-4
 """A surface moves points by their sigma at most, which is kept in single precision."""
@@ -35,13 +36,14 @@ def model_of_scan(
     shift_field: ShiftField | None = None,
     most: int = MOST,
     num_points: int | None = None,
+    rows: Rows | None = None,
 ) -> Model:
     """Join a scan's points with its surface, to be shown together.
 
     Args:
         name: How people tell it from another.
         cloud: The points, at least one, in the world frame [m].
-        mesh: The surface between them; its vertices may be points of the cloud or others.
+        mesh: The surface between them, whose vertices know their points.
         trajectory: How the camera went through the world.
         frames: At which time each frame was recorded, for the trajectory.
         is_timed: Whether these times are seconds, and no numbers of pictures.
@@ -49,31 +51,41 @@ def model_of_scan(
         most: Points and vertices that are kept, at most: of more points a fair choice, of more
             vertices one a cell.
         num_points: Points that the scan has, where the cloud is a choice of them already.
+        rows: Number of each of the cloud's points among those of the scan; all in their order
+            unless given.
 
     Returns:
-        The model. A vertex of the surface that lies within a point's own standard deviation is that
-        point, as the surface has smoothed it; others take what is known from the nearest.
+        The model. A vertex of the surface that lies within the standard deviation of its own point
+        is that point, as the surface has smoothed it; others take what is known from theirs.
+
+    Raises:
+        InputError: The surface does not say which points its vertices are, or the cloud lacks them.
     """
-    kept = cloud[choose_fairly(len(cloud), most)]
-    kept = kept[np.argsort(kept.frame, kind="stable")]
+    total = num_points or len(cloud)
+    rows = np.arange(len(cloud)) if rows is None else rows
+    is_kept = np.isin(rows, choose_fairly(total, most))
+    order, count = np.lexsort((cloud.frame, ~is_kept)), int(is_kept.sum())
+    cloud, rows = cloud[order], rows[order]
     surface = cluster_vertices(_no_surface() if mesh is None else mesh, most)
-    place, source = _find_points(surface, kept, spacing := usual_spacing(kept.points))
-    apart = place >= len(kept)
-    vertices = np.concatenate([kept.points, surface.vertices[apart]])
+    spacing = usual_spacing(cloud.points[:count])
+    place, source = _find_points(surface, cloud, rows, count, spacing)
+    apart = place >= count
+    vertices = np.concatenate([cloud.points[:count], surface.vertices[apart]])
     corners = vertices.copy()
     corners[place] = surface.vertices
     faces = place[surface.faces]
-    times, moments = np.unique(kept.frame, return_inverse=True)
+    times, moments = np.unique(cloud.frame, return_inverse=True)
     seconds = _seconds(times, frames)
     path = _path(seconds, trajectory) if frames is not None else None
     return Model(
         name=name,
         vertices=vertices,
-        normals=normals_of(corners, faces, kept.normals[source].astype(float)),
+        normals=normals_of(corners, faces, cloud.normals[source].astype(float)),
         faces=faces,
         surface=corners,
-        num_measured=len(kept),
-        layers=_layers(kept, source),
+        num_measured=count,
+        rows=rows[source],
+        layers=_layers(cloud, source),
         moments=moments[source],
         times=seconds,
         is_timed=is_timed and frames is not None,
@@ -82,31 +94,43 @@ def model_of_scan(
         views=standard_views(trajectory),
         spacing=spacing,
         shift_field=shift_field,
-        note=_note(num_points or len(cloud), kept, mesh, surface),
+        note=_note(total, cloud[:count], mesh, surface),
     )
 
 
-def _find_points(surface: Mesh, cloud: PointCloud, spacing: float) -> tuple[Corners, Sources]:
-    """Find which point each vertex of a surface is, or number it after the points.
+def _find_points(
+    surface: Mesh, cloud: PointCloud, rows: Rows, count: int, spacing: float
+) -> tuple[Corners, Sources]:
+    """Tell which of the first points each vertex of a surface is, or number it after them.
 
     Returns:
         The number of each vertex, and for each number the point from which it takes what is known.
     """
-    found = KDTree(cloud.points).query(surface.vertices)
-    away, nearest = np.asarray(found[0]), np.asarray(found[1]).astype(int)
-    order = np.lexsort((away, nearest))
+    if surface.points is None:
+        raise InputError(
+            "The surface does not say which points its vertices are; give one made from the cloud."
+        )
+    by_row = np.argsort(rows)
+    slot = np.searchsorted(rows[by_row], surface.points)
+    own = by_row[np.minimum(slot, len(rows) - 1)]
+    if not np.array_equal(rows[own], surface.points):
+        raise InputError("The cloud lacks points that the surface was made from.")
+    away = np.linalg.norm(surface.vertices - cloud.points[own], axis=1)
+    order = np.lexsort((away, own))
     is_nearest = np.ones(len(order), bool)
-    # A point is one vertex, the nearest of those that could be it.
-    is_nearest[order[1:]] = np.diff(nearest[order]) != 0
-    near = away <= np.minimum(cloud.sigma[nearest] * _ROUNDING, spacing)
-    apart = np.flatnonzero((away > 0) & ~(near & is_nearest))
-    place = nearest.copy()
-    place[apart] = len(cloud) + np.arange(len(apart))
-    return place, np.concatenate([np.arange(len(cloud)), nearest[apart]])
+    # A point is one vertex, the nearest of those that stand for it.
+    is_nearest[order[1:]] = np.diff(own[order]) != 0
+    near = away <= np.minimum(cloud.sigma[own] * _ROUNDING, spacing)
+    is_point = (own < count) & is_nearest & (near | (away == 0))
+    apart = np.flatnonzero(~is_point)
+    place = own.copy()
+    place[apart] = count + np.arange(len(apart))
+    return place, np.concatenate([np.arange(count), own[apart]])
 
 
 def _no_surface() -> Mesh:
-    return Mesh(np.zeros((0, 3)), np.zeros((0, 3), int))
+    none = np.zeros((0, 3), int)
+    return Mesh(np.zeros((0, 3)), none, points=np.zeros(0, int))
 
 
 def _layers(cloud: PointCloud, source: Indices) -> tuple[Layer, ...]:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from scipy.spatial import KDTree
 
 from ..errors import InputError
@@ -14,7 +14,7 @@ from .shift_field import ShiftField
 from .surface import vertex_normals
 from .views import View, standard_views
 
-Values = Float[np.ndarray, "vertices"]
+Rows = Int[np.ndarray, "rows"]
 Times = Float[np.ndarray, "profiles"]
 Path = Float[np.ndarray, "positions 3"]
 Attitudes = Float[np.ndarray, "positions 4"]
@@ -55,6 +55,8 @@ class Model:
     """Where the triangles' corners lie [m]: a smoothed surface passes its points by."""
     num_measured: int
     """Vertices that are measured points, which a measurement snaps to and is taken between."""
+    rows: Indices
+    """Number of the point of the scan that each vertex is or stands for."""
     layers: tuple[Layer, ...]
     """What is known of each vertex; of the one named sigma [mm] a measurement gets its doubt."""
     moments: Indices
@@ -76,25 +78,27 @@ class Model:
     note: str = ""
     """What must be said of it in plain words, such as that points were left out."""
 
-    def with_layer(self, layer: Layer, at: Points | None = None) -> "Model":
+    def with_layer(self, layer: Layer, rows: Rows | None = None) -> "Model":
         """Give a model with one more layer, in place of the one of its name.
 
         Args:
-            layer: Its values, one a vertex; or one a place, if places are given.
-            at: The places that the values belong to [m]: a vertex takes the value of the nearest,
-                none where that is farther than four times the usual distance between neighbours.
+            layer: Its values, one a vertex; or one a row, if rows are given.
+            rows: The points of the scan that the values belong to, each once: a vertex takes the
+                value of its own, none where that has none.
 
         Raises:
-            InputError: There is not one value a vertex, or a place.
+            InputError: There is not one value a vertex, or a row.
         """
-        count = len(self.vertices) if at is None else len(at)
+        count = len(self.vertices) if rows is None else len(rows)
         if len(layer.values) != count:
             raise InputError(
                 f"The layer {layer.name} has {len(layer.values)} values for {count} places; give "
                 "one a place."
             )
-        if at is not None:
-            layer = replace(layer, values=self._carry(layer.values, at))
+        if rows is not None:
+            values = np.full(int(max(self.rows.max(), rows.max(initial=0))) + 1, np.nan)
+            values[rows] = layer.values
+            layer = replace(layer, values=values[self.rows])
         others = tuple(one for one in self.layers if one.name != layer.name)
         return replace(self, layers=(*others, layer))
 
@@ -115,11 +119,6 @@ class Model:
             attitudes=target_from_world.turn(self.attitudes) if known else self.attitudes,
             views=views,
         )
-
-    def _carry(self, values: Scalars, at: Points) -> Values:
-        away, nearest = KDTree(at).query(self.vertices, distance_upper_bound=4 * self.spacing)
-        found = np.isfinite(away)
-        return np.where(found, np.append(values, np.nan)[nearest], np.nan)
 
 
 def model_of_points(
@@ -142,6 +141,7 @@ def model_of_points(
         faces=corners,
         surface=points,
         num_measured=count,
+        rows=np.arange(count),
         layers=(),
         moments=np.zeros(count, int),
         times=np.zeros(1),

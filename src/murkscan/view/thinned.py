@@ -46,7 +46,9 @@ def cluster_vertices(mesh: Mesh, most: int) -> Mesh:
     while True:
         kept, owner = _join(mesh.vertices - corner, cell)
         if len(kept) <= most:
-            return Mesh(mesh.vertices[kept], _without_collapsed(owner[mesh.faces]))
+            points = None if mesh.points is None else mesh.points[kept]
+            faces = _without_collapsed(owner[mesh.faces])
+            return Mesh(mesh.vertices[kept], faces, points=points)
         cell *= _GROWTH
 
 
