@@ -27,5 +27,5 @@ def test_what_is_set_has_no_uncertainty_to_show(tmp_path, capsys):
     rows = [line.split("│") for line in said.splitlines() if "│" in line]
     shown = {row[1].strip(): [cell.strip() for cell in row[2:-1]] for row in rows}
     assert shown["radius"] == ["30.26", "0.24", "0.12", "0.00", "mm"]
-    assert shown["y"] == ["200.0485", "–", "", "", "mm"]
+    assert shown["y"] == ["0.2000", "–", "", "", "m"]
     assert shown["axis y"] == ["1.0000", "–", "", "", ""]
