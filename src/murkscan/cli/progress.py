@@ -47,6 +47,9 @@ def progress_bars() -> Iterator["Progress"]:
         with _telling_of_compilation(bars):
             yield show
         bars.update(loading, visible=False)
+        for task in bars.tasks:
+            if task.total is None:  # nobody knew how many steps there would be; now it is known
+                bars.update(task.id, total=max(task.completed, 1), completed=max(task.completed, 1))
 
 
 @contextmanager
