@@ -6,6 +6,9 @@ from ..errors import FormatError
 from .progress import progress_bars
 from .words import tell
 
+_INDENT = 13
+"""Columns of the longest stage's name."""
+
 
 def check(out: Path) -> None:
     """Compare every file of a scan with the checksum that it was written with.
@@ -24,7 +27,7 @@ def check(out: Path) -> None:
         counts = f"{one.num_whole:,} files as they were written"
         if one.foreign:
             counts += f", {len(one.foreign):,} that are not murkscan's"
-        tell(one.word, f"{counts}{'; ' + one.state if one.state else ''}")
+        tell(one.word, f"{counts}{'; ' + one.state if one.state else ''}", indent=_INDENT)
     spoilt = [name for one in checks for name in (*one.changed, *one.missing)]
     for name in spoilt:
         tell("", f"{'changed' if (out / name).exists() else 'missing'}: {name}")
@@ -33,3 +36,4 @@ def check(out: Path) -> None:
             f"{len(spoilt):,} files of {out} are not as they were written. Delete those that have "
             "changed and run the same commands again: what is missing is made anew."
         )
+    tell("quality", "every file is as it was written", indent=_INDENT)
