@@ -5,9 +5,9 @@ import pytest
 
 from murkscan.io.rig_toml import as_tables
 from murkscan.motion import ConstantSpeed
+from murkscan.optics.seen_points import spread_common
 from murkscan.optics.uncertainty import common_sigma
 from murkscan.survey.cloud import build_cloud
-from murkscan.survey.common_part import spread_common
 from murkscan.survey.sample import load_sample
 from murkscan.types.camera import Camera
 from murkscan.types.laser import Laser

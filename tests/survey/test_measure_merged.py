@@ -72,7 +72,7 @@ def test_every_measure_is_taken_and_has_an_interval(merged, what, capsys):
         low, high = quantity["interval_95"]
         assert low <= quantity["value"] <= high
     if what not in ("deviation", "dents"):
-        assert "alignment" in capsys.readouterr().out
+        assert "Of ../first.ply, ../second.ply no rig" in capsys.readouterr().out
 
 
 def test_the_report_tells_of_each_pass_and_of_their_disagreement(merged):

@@ -107,7 +107,7 @@ def hills(x, y):
     return 0.5 + 0.008 * np.sin(60 * x) * np.cos(50 * y)
 
 
-def scanned(root, rig, *, spacing, back):
+def scanned(root, rig, *, spacing, back, is_adrift=False):
     """A pass over hills, that a rig saw which is not quite the one that it is taken for."""
     surface = (lambda x, y: hills(-x, -y)) if back else hills
     profile, trajectory = scan(surface, spacing=spacing)
@@ -116,6 +116,10 @@ def scanned(root, rig, *, spacing, back):
     profile = replace(profile, points=intersect_rays_with_sheet(rays, rig.lasers[0]))
     frames, times = np.unique(profile.frame), np.unique(profile.time)
     poses = trajectory.at(times).carry(BACK if back else Pose.identity())
+    if is_adrift:  # all of its log along x
+        errors = np.zeros((len(times), 6, 1))
+        errors[:, 0] = 1e-3
+        poses = replace(poses, errors=errors)
     project, note = Project(root), PartNote(tuple(frames.tolist()), tuple(times.tolist()), (), ())
     project.save_scan(replace(SCAN, rig=as_tables(RIG)))
     extract = finish(
@@ -183,3 +187,18 @@ def test_an_error_of_a_pass_s_poses_that_alignment_sees_is_answered(tmp_path):
     assert np.abs(before).max() > 5e-4
     # Points lie a millimetre from the pairs that stand for them; a thousandth of that is turned.
     assert np.abs(after).max() < 2e-6
+
+
+def test_a_pass_goes_along_with_the_error_of_the_log_that_it_is_laid_on(tmp_path):
+    passes = [
+        scanned(tmp_path / "a", RIG, spacing=2e-3, back=False, is_adrift=True),
+        scanned(tmp_path / "b", RIG, spacing=2.1e-3, back=True, is_adrift=True),
+    ]
+    told = merge_passes(passes, tmp_path / "out").passes
+    assert [one.pose_errors for one in told] == [1, 1]
+    merged = load_sample(Project(tmp_path / "out"))
+    shifts = merged.shifts(np.arange(len(merged)))
+    # Behind the two errors of the rig come those of the first log and of the second.
+    np.testing.assert_allclose(shifts[:, :, 2], np.tile([1e-3, 0, 0], (len(merged), 1)), atol=1e-6)
+    second = merged.cloud.frame >= told[1].frames[0]
+    assert np.abs(shifts[second, :, 3]).max() < 1e-6

@@ -107,31 +107,17 @@ def _read_three(flag: str, text: str) -> tuple[float, float, float]:
 def print_measurement(
     out: Path, name: str, found: "Measurement", *, suffixes: tuple[str, ...] = ()
 ) -> None:
-    """Print a measurement as a table, and where it was written."""
+    """Print a measurement as a table, what its intervals lack, and where it was written."""
+    from ..project import Project
+    from ..project.unstated import list_unstated
+
     rows = [_row(quantity) for quantity in found.quantities]
     columns = (found.kind, "value", "±95%", "1σ own", "1σ common", "unit")
     print_table("", columns, rows)
-    _tell_common(out, found)
+    for text in list_unstated(Project(out)):
+        say(text)
     tell("meaning", _MEANING)
     tell("made", *(str(out / "measure" / f"{name}.{kind}") for kind in ("json", *suffixes)))
-
-
-def _tell_common(out: Path, found: "Measurement") -> None:
-    """Say what the common part lacks."""
-    from ..project import Project, is_merged
-    from ..project.merged import list_unstated
-    from ..survey.common_part import list_unstated as list_unstated_of_scan
-
-    project = Project(out)
-    if not is_merged(project):
-        for text in list_unstated_of_scan(project):
-            say(text)
-        return
-    if unstated := list_unstated(project):
-        say(
-            f"Of {', '.join(unstated)} no rig with a covariance is known: the common part is that "
-            "of the passes' alignment and of the other rigs."
-        )
 
 
 def _row(quantity: "Quantity") -> tuple[str, ...]:

@@ -1,11 +1,14 @@
 """Points in the world as the camera of a scan saw them: from where, and moved by which errors."""
 
+import os
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
 from ..geometry.stripe_blur import Sight
-from ..types.arrays import Pixels, Points, Scalars, SmallNumbers
+from ..types.arrays import Pixels, Points, Ratios, Scalars, SmallNumbers
 from ..types.profile import Profile
 from ..types.rig import Rig
 from ..types.trajectory import Trajectory
@@ -13,6 +16,9 @@ from .sheet import light_across
 from .uncertainty import Shifts, common_shifts
 from .view import project
 from .water import refractive_index
+
+_PART = 20_000
+"""Points that one thread works on: some ten megabytes."""
 
 
 def look_back(
@@ -88,3 +94,33 @@ def shifts_in_world(profile: Profile, trajectory: Trajectory, rig: Rig) -> Shift
     by_rig = shift_points(profile.pixels, profile.laser, profile.time, trajectory, rig)
     points = trajectory.transform(profile.points, profile.time)
     return np.concatenate([by_rig, trajectory.shifts(points, profile.time)], axis=2)
+
+
+def spread_common(profile: Profile, trajectory: Trajectory, rig: Rig) -> Ratios:
+    """Compute the common standard deviation of each point, in the direction where it is largest.
+
+    Args:
+        profile: The points, with the pixels that they come from.
+        trajectory: world_from_camera, with its errors.
+        rig: The rig, as it moves in this scan.
+
+    Returns:
+        Standard deviations [m]; 0 where neither the rig nor the motion states any, NaN where a
+        pixel sees no point.
+    """
+    sigma = np.zeros(len(profile), np.float32)
+    if not rig.covariance.names and trajectory.errors is None:
+        return sigma
+
+    def run(start: int) -> None:
+        part = slice(start, start + _PART)
+        shifts = shifts_in_world(profile[part], trajectory, rig)
+        seen = np.isfinite(shifts).all(axis=(1, 2))
+        covariances = shifts[seen] @ shifts[seen].transpose(0, 2, 1)
+        largest = np.full(len(seen), np.nan)
+        largest[seen] = np.sqrt(np.maximum(np.linalg.eigvalsh(covariances)[:, -1], 0.0))
+        sigma[part] = largest
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(run, range(0, len(profile), _PART)))
+    return sigma

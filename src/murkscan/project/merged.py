@@ -44,12 +44,6 @@ def load_pass_rig(project: Project, one: PassRecord) -> Rig | None:
     return as_it_moves(rig, carries_mount=one.carries_mount)
 
 
-def list_unstated(project: Project) -> list[str]:
-    """Name the passes of which no rig with a covariance is known."""
-    rigs = [(one.path, load_pass_rig(project, one)) for one in load_passes(project)]
-    return [path for path, rig in rigs if rig is None or not rig.covariance.names]
-
-
 def load_merged_errors(project: Project) -> MergedErrors:
     """Read how the points of a merged cloud move with all errors that are stated.
 

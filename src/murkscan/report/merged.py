@@ -102,12 +102,8 @@ class MergedSummary:
     """Time that each stage took [s]."""
     commands: Sequence[str]
     pictures: Sequence[Shown]
-
-    @property
-    def unstated(self) -> list[str]:
-        """Names of the passes of which no rig with a covariance is known."""
-        stated = [bool(one.rig.covariance.names) for one in self.rigs]
-        return [one.name for one in self.passes if one.rig is None or not stated[one.rig]]
+    unstated: Sequence[str]
+    """Whose errors no interval knows, in sentences."""
 
 
 def merged_as_html(summary: MergedSummary) -> str:
@@ -142,6 +138,7 @@ def merged_as_json(summary: MergedSummary) -> dict[str, Any]:
         "mesh": {"vertices": model.vertices, "faces": model.faces},
         "size_mm": None if model.size is None else [round_off(1e3 * edge) for edge in model.size],
         "uncertainty_mm": None if summary.trust is None else as_uncertainty(summary.trust),
+        "not_in_uncertainty": list(summary.unstated),
         "rigs": [{"file": one.file or None, **dict(rig_rows(one.rig))} for one in summary.rigs],
         "settings": dict(summary.settings),
         "versions": dict(summary.versions),
@@ -212,14 +209,8 @@ def _as_mm(length: float) -> float:
 
 def _uncertainty(summary: MergedSummary) -> list[Block]:
     assert summary.trust is not None
-    text = "The common part is that of the passes' rigs and of their alignment together."
-    blocks: list[Block] = [Note(text)]
-    if summary.unstated:
-        lacking = (
-            f"Of {', '.join(summary.unstated)} no rig with a covariance is known: its errors lack."
-        )
-        blocks.append(Note(lacking, "warning"))
-    return [*uncertainty_blocks(summary.trust), *blocks]
+    text = "The common part is that of the passes' rigs, poses and alignment together."
+    return [*uncertainty_blocks(summary.trust, unstated=summary.unstated), Note(text)]
 
 
 def _as_plain_pass(one: ReportedPass) -> dict[str, Any]:

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from ..calibrate.board.chessboard import Chessboard, Margin
 from ..calibrate.check import BoardCheck, LinedBoard, check_on_boards, judge_length
@@ -142,14 +141,14 @@ def check_in_scan(
 
 
 def _nearest(in_world: Points, end: Vector) -> int:
-    distance, number = cKDTree(in_world).query(end) if len(in_world) else (np.inf, 0)
-    if distance > _FARTHEST:
+    distances = np.linalg.norm(in_world - end, axis=1)
+    if distances.min(initial=np.inf) > _FARTHEST:
         x, y, z = end
         raise InputError(
             f"No point of the scan lies within {_FARTHEST * 1e3:.0f} mm of {x:g},{y:g},{z:g} m; "
             "read both ends off cloud/cloud.ply, whose coordinates are metres."
         )
-    return int(number)
+    return int(distances.argmin())
 
 
 def _measure(ends: Profile, in_world: Points, trajectory: Trajectory, rig: Rig) -> Length:

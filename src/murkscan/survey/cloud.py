@@ -11,6 +11,7 @@ import numpy as np
 
 from ..cloud import OUTLIER_RULES, AbstractOutlierRule, SeenCloud, find_outliers, merge_profiles
 from ..distribute import AbstractExecutor, Threads
+from ..optics.seen_points import spread_common
 from ..project import (
     CLOUD,
     EXTRACT,
@@ -28,7 +29,6 @@ from ..types.laser import Axis
 from ..types.profile import Profile
 from ..types.rig import Rig
 from ..types.trajectory import Trajectory
-from .common_part import spread_common
 from .progress import Progress, silent
 from .stage_runner import run_stage
 

@@ -12,6 +12,7 @@ from ..geometry.surface_points import nearest_in_cloud
 from ..optics.merged_errors import MergedErrors
 from ..project import CLOUD, MESH, STAGES, PassRecord, PassResult, Project
 from ..project.merged import load_merged_errors, load_pass_rig, load_passes, rig_key
+from ..project.unstated import list_unstated
 from ..report import (
     MergedSummary,
     Model,
@@ -71,6 +72,7 @@ def summarise_merged(project: Project, pictures: list[Shown]) -> MergedSummary:
         durations={word: stage.record.seconds for word, stage in stages.items()},
         commands=[*_list_commands(records), *list_commands(project)],
         pictures=pictures,
+        unstated=list_unstated(project),
     )
 
 

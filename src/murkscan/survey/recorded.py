@@ -6,9 +6,9 @@ from pathlib import Path
 
 from ..project import EXTRACT, MOTION, STAGES, Project, ScanRecord, is_merged, load_recording
 from ..project.origin import name_recording
+from ..project.unstated import list_unstated
 from ..report import Recorded
 from ..types.frame_times import FrameTimes
-from .common_part import list_unstated
 
 _SINCE = 1e8
 """A log's time above this counts seconds since 1970; below it, a clock of its own [s]."""

@@ -112,7 +112,7 @@ def _merged_in_short(summary: MergedSummary) -> ReportResult:
         points=summary.model.points,
         half_width=None if typical is None else AT_95 * typical,
         own_half_width=None if own is None else AT_95 * own,
-        unstated=tuple(f"of {path} no rig with a covariance is known" for path in summary.unstated),
+        unstated=tuple(summary.unstated),
         steps_with_advice=_with_advice(steps),
     )
 
