@@ -6,12 +6,11 @@ What every stage leaves is a table; pandas, Polars, DuckDB and R read it.
 The scan is that of example 01; of your own, take ``folder = Path("dive")``.
 """
 
-from pathlib import Path
-from runpy import run_path
+from importlib import import_module
 
 import pandas as pd
 
-folder = run_path(str(Path(__file__).with_name("01_scan_a_recording.py")))["project"].root
+folder = import_module("01_scan_a_recording").project.root
 
 stripes = pd.read_parquet(folder / "extract" / "stripes")
 print(stripes[["frame", "u", "v", "sigma", "signal", "posterior"]].head(3).to_string(index=False))

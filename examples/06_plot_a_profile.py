@@ -6,13 +6,12 @@ One frame's profile with the interval that holds it in 95 of 100 cases, drawn by
 The scan is that of example 01; of your own, take ``ms.Project("dive")``.
 """
 
-from pathlib import Path
-from runpy import run_path
+from importlib import import_module
 
 import matplotlib.pyplot as plt
 import numpy as np
 
-project = run_path(str(Path(__file__).with_name("01_scan_a_recording.py")))["project"]
+project = import_module("01_scan_a_recording").project
 
 profiles = project.load_profile()
 number = int(np.median(profiles.frame))

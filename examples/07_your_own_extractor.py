@@ -9,8 +9,7 @@ extractor gives is looked at before it is believed: nonsense is refused with its
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from pathlib import Path
-from runpy import run_path
+from importlib import import_module
 from typing import final
 
 import numpy as np
@@ -69,11 +68,11 @@ class Nonsense(AbstractExtractor):
 
 
 if __name__ == "__main__":
-    first = run_path(str(Path(__file__).with_name("01_scan_a_recording.py")))
-    folder, pictures = first["folder"], (first["recording"], first["rig"])
+    first = import_module("01_scan_a_recording")
+    folder, pictures = first.folder, (first.recording, first.rig)
     # As a whole scan takes it: ms.scan(recording, rig, motion, out="dive", extractor=Brightest())
     own = extract_recording(ms.Project(folder / "own"), *pictures, Brightest(least=30))
-    print(f"{own.points} centres; {len(first['project'].load_stripe())} by murk")
+    print(f"{own.points} centres; {len(first.project.load_stripe())} by murk")
     try:
         extract_recording(ms.Project(folder / "nonsense"), *pictures, Nonsense())
     except ms.InputError as error:

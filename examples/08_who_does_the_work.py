@@ -10,8 +10,7 @@ The Dask cluster is begun on this machine here; give ``Dask("tcp://host:8786")``
 
 import time
 from hashlib import sha256
-from pathlib import Path
-from runpy import run_path
+from importlib import import_module
 
 import murkscan as ms
 from murkscan.distribute import Dask, Serial, Threads
@@ -19,11 +18,11 @@ from murkscan.survey.extract import extract_recording
 
 # Processes read this file again when they begin: what they shall not do stands behind this line.
 if __name__ == "__main__":
-    first = run_path(str(Path(__file__).with_name("01_scan_a_recording.py")))
-    recording, rig = first["recording"], first["rig"]
+    first = import_module("01_scan_a_recording")
+    recording, rig = first.recording, first.rig
     for executor in (Serial(), Threads(2), Dask(workers=2)):
         name = type(executor).__name__.lower()
-        project = ms.Project(first["folder"] / f"by-{name}")
+        project = ms.Project(first.folder / f"by-{name}")
         since = time.perf_counter()
         extract_recording(project, recording, rig, ms.GrayGravity(), executor=executor)
         parts = sorted((project.root / "extract" / "stripes").glob("*.parquet"))

@@ -7,13 +7,12 @@ The scan is that of example 01, a ball before a wall; its drawing is the simulat
 the command line: ``murkscan measure dive deviation --reference hull.stl --unit mm``.
 """
 
-from pathlib import Path
-from runpy import run_path
+from importlib import import_module
 
 from murkscan.survey.deviation import compare_scan, load_reference
 
-first = run_path(str(Path(__file__).with_name("01_scan_a_recording.py")))
-project, drawing = first["project"], first["folder"] / "recording" / "truth" / "mesh.ply"
+first = import_module("01_scan_a_recording")
+project, drawing = first.project, first.folder / "recording" / "truth" / "mesh.ply"
 
 # The poses put the scan into the drawing's own frame; elsewhere, `lay_on` aligns them first.
 found = compare_scan(project, load_reference(drawing, unit="m"), within=0.01)
