@@ -4,8 +4,6 @@ Run: python benchmarks/dive.py [--work FOLDER] [--gigabytes 0.2,2,10]
 """
 
 import argparse
-import os
-import resource
 import shutil
 import subprocess
 import sys
@@ -192,16 +190,17 @@ def rms_after_alignment(points, truth) -> float:
     return float(np.sqrt(np.mean(np.sum((a @ turn - b) ** 2, axis=1))))
 
 
-_LIST = "from murkscan.cli.main import run; import sys; sys.exit(run(['dive', sys.argv[1]]))"
+_LIST = "from murkscan.cli.main import run; run(['dive', sys.argv[1]])"
 _READ = """
-import sys
 from itertools import islice
 from murkscan.capture import open_recording
 recording = open_recording(sys.argv[1])
 for frame in islice(recording.frames(recording.num_frames - 100), 100): pass
 recording.sample(48)
 """
-_NOTHING = "import murkscan.io.dive.contents, murkscan.capture, murkscan.cli.main, sys"
+_NOTHING = "import murkscan.io.dive.contents, murkscan.capture, murkscan.cli.main"
+_PEAK = "import sys\n{}\nprint(open('/proc/self/status').read().split('VmHWM:')[1].split()[0])"
+"""A process' own largest resident set [kB]; what wait4 tells counts that of who began it, too."""
 
 
 def measure_memory(work: Path, dive: Dive, sizes: list[float]) -> list[Figure]:
@@ -233,11 +232,9 @@ def measure_memory(work: Path, dive: Dive, sizes: list[float]) -> list[Figure]:
 def peak(code: str, path: Path) -> tuple[float, float]:
     """Run some code in a process of its own: largest resident set [MB], and time [s]."""
     began = time.perf_counter()
-    child = subprocess.Popen([sys.executable, "-c", code, str(path)], stdout=subprocess.DEVNULL)
-    _, _, usage = os.wait4(child.pid, 0)
-    child.returncode = 0
-    assert isinstance(usage, resource.struct_rusage)
-    return usage.ru_maxrss / 1e3, time.perf_counter() - began
+    words = [sys.executable, "-c", _PEAK.format(code), str(path)]
+    said = subprocess.run(words, stdout=subprocess.PIPE, text=True, check=True).stdout
+    return int(said.splitlines()[-1]) / 1e3, time.perf_counter() - began
 
 
 if __name__ == "__main__":

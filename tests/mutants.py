@@ -22,6 +22,7 @@ from murkscan.errors import MurkscanError
 from murkscan.io.cloud_files import iterate_cloud_file, writing_cloud_file
 from murkscan.io.images import write_image
 from murkscan.io.mesh_files import load_mesh, save_mesh
+from murkscan.io.navigation_log import read_navigation_log
 from murkscan.io.poses import load_poses, save_poses
 from murkscan.io.rig_toml import load_rig
 from murkscan.project import Project
@@ -32,6 +33,9 @@ from murkscan.types.mesh import Mesh
 from murkscan.types.trajectory import Trajectory
 
 from .memory import peak_kib
+
+sys.path.append(str(Path(__file__).resolve().parents[1] / "benchmarks"))
+import dive_files
 
 SIZE = (96, 64)
 CODECS = {
@@ -99,6 +103,7 @@ def make_seeds(folder: Path) -> None:
     (folder / "scene" / "scene.toml").write_text(read_scene("hull")[0])
     shutil.copytree(Path(simulate.__file__).parent / "scenes" / "rigs", folder / "scene" / "rigs")
     _write_logs(folder / "poses")
+    _write_dives(folder, pictures)
     stairs = folder / "recording"
     for number in range(8):
         write_image(stairs / f"{number}.png", _picture(number))
@@ -113,8 +118,10 @@ def make_seeds(folder: Path) -> None:
 
 def read(kind: str, path: Path) -> object:
     """Read a file, or the folder it lies in, as a user's command would."""
-    if kind == "video":
+    if kind in ("video", "dive"):
         return _read_recording(path)
+    if kind == "navigation":
+        return read_navigation_log(path)
     if kind.startswith("folder"):
         return _read_recording(path.parent)
     if kind == "cloud":
@@ -128,6 +135,19 @@ def read(kind: str, path: Path) -> object:
         "poses": load_poses,
     }
     return readers[kind](path)
+
+
+def _write_dives(folder: Path, pictures: list[np.ndarray]) -> None:
+    times = np.arange(0, 0.4, 0.04)
+    way = Trajectory(times, np.zeros((10, 3)), np.tile([1.0, 0.0, 0.0, 0.0], (10, 1)))
+    dive = dive_files.Dive(dive_files.encode_h264(pictures, 25.0), times[: len(pictures)], way)
+    (folder / "dive").mkdir()
+    (folder / "navigation").mkdir()
+    dive_files.write_blueos(folder / "dive" / "dive.mcap", dive, chunk_size=2000)
+    dive_files.write_ros1(folder / "dive" / "dive.bag", dive, pictures)
+    dive_files.write_ros2(folder / "dive" / "ros2", dive, "sqlite3")
+    dive_files.write_tlog(folder / "navigation" / "dive.tlog", dive)
+    dive_files.write_csv(folder / "navigation" / "dive.csv", dive)
 
 
 def _read_recording(path: Path) -> object:
@@ -158,7 +178,7 @@ def seeds_of(folder: Path) -> list[tuple[str, Path]]:
     found = []
     for path in sorted(folder.rglob("*")):
         kind = path.relative_to(folder).parts[0]
-        skipped = kind == "recording" or "rigs" in path.parts or path.suffix == ".html"
+        skipped = kind == "recording" or "rigs" in path.parts or path.suffix in (".html", ".yaml")
         if path.is_file() and not skipped and (kind != "project" or path.suffix != ".png"):
             found.append((kind, path))
     return found

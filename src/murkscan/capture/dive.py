@@ -243,17 +243,23 @@ def _decode(
     keys = np.flatnonzero(index.is_key[: first + 1])
     begin = int(keys[-1]) if len(keys) else 0
     decoder: Any = None
+    empty: list[tuple[int, Image | None, str]] = []
     for number, picture in _messages(file, index, begin):
         if picture is None or not picture.data:
-            yield number, None, "came without data: the recorder dropped it"
-        elif picture.codec in VIDEO:
-            if decoder is None:
-                decoder = av.CodecContext.create(VIDEO[picture.codec], "r")
-            yield from _feed(decoder, number, picture.data, wavelength)
+            empty.append((number, None, "came without data: the recorder dropped it"))
+            continue
+        if picture.codec in VIDEO:
+            decoder = decoder or av.CodecContext.create(VIDEO[picture.codec], "r")
+            items = list(_feed(decoder, number, picture.data, wavelength))
         else:
-            yield _read_still(number, picture, wavelength)
-    if decoder is not None:
-        yield from _feed(decoder, 0, b"", wavelength)
+            items = [_read_still(number, picture, wavelength)]
+        for item in items:
+            # A decoder may hold pictures back, so what came without data waits for its turn.
+            while empty and empty[0][0] < item[0]:
+                yield empty.pop(0)
+            yield item
+    last = [] if decoder is None else _feed(decoder, 0, b"", wavelength)
+    yield from sorted([*last, *empty], key=lambda item: item[0])
 
 
 def _messages(
@@ -262,15 +268,18 @@ def _messages(
     """Give the pictures from one on, each with its number."""
     if begin >= len(index.places):
         return
-    number, place = begin, tuple(index.places[begin].tolist())
-    for message in file.messages(place[0]):
-        if message.topic.name != index.topic.name or (message.place, message.number) < place:
+    number = begin
+    for message in file.messages(int(index.places[begin, 0])):
+        # Found by its place: what was left out when the file was looked through has no number.
+        if (message.place, message.number) != tuple(index.places[number].tolist()):
             continue
         try:
             yield number, read_picture(message.topic, decode(message))
         except FormatError:
             yield number, None
         number += 1
+        if number == len(index.places):
+            return
 
 
 def _feed(

@@ -29,6 +29,8 @@ from .series import Series, SeriesKind, read_series, series_kind
 _NEAR = 10.0
 """Difference of a message's own time from the log's up to which both clocks are one [s]: further
 apart, the message's clock was never set."""
+_LATEST = 1 << 62
+"""Times beyond this are none: the year 2116 [ns]."""
 _ALIKE = 0.2
 """Change of that difference at a step up to which the step is in both clocks [s]."""
 
@@ -174,7 +176,11 @@ class _Gathering:
         self._damage: dict[str, int] = {}
 
     def read(self, num_bytes: int, progress: Progress) -> DiveContents:
-        for number, message in enumerate(self._file.messages(tell=self._note)):
+        for message in self._file.messages(tell=self._note):
+            if not (0 <= message.log_time < _LATEST and 0 <= message.publish_time < _LATEST):
+                self._note(f"a message of {message.topic.name} has a time that cannot be")
+                continue
+            number = len(self._log)
             self._log.append(message.log_time)
             self._sent.append(message.publish_time)
             topic = message.topic
