@@ -149,7 +149,10 @@ def _is_credible(
     score = ridges.heights[line, which]
     least = np.sqrt(noise.variance(np.zeros(1)))[0]
     expected = score * least / math.sqrt(math.sqrt(math.pi) * shape.width)
-    return (height > _CREDIBLE * expected) & (height < 1.5 * noise.white)
+    top = np.rint(ridges.positions[line, which]).astype(int)
+    is_white = ridges.lines.levels[top, line] >= noise.white
+    # What is cut off at white may be higher than that by any factor.
+    return (height > _CREDIBLE * expected) & (is_white | (height < 1.5 * noise.white))
 
 
 def _measure_white(

@@ -18,9 +18,14 @@ from .surface import Surroundings
 
 Picture = Float32[np.ndarray, "h w"]
 
-_OFFSETS = np.linspace(-4.0, 4.0, 13)
-"""Where the sheet's thickness is sampled [standard deviations]: at this spacing a sum over a
-Gaussian is its integral to 1e-9."""
+_REACH, _STEPS = 4.0, 6
+"""Standard deviations over which the sheet's thickness is sampled to each side, and the steps that
+it takes at least: at this spacing a sum over a Gaussian is its integral to 1e-9."""
+_SPACING = 1.4
+"""Standard deviations of what blurs each sample, lens and pixel, from one to the next at most: the
+ripple of their sum is then 1e-4 of it."""
+_PIXEL = 1 / math.sqrt(12)
+"""Standard deviation of a place within a pixel [px]."""
 _THINNEST, _THICKEST = 0.02, 30.0
 """Bounds of the stripe's own width [px]."""
 _SHININESS = 60.0
@@ -74,8 +79,10 @@ def draw_line(
     """
     if not len(line):
         return
-    positions, spacing = _windows(line, widths)
-    lines = np.repeat(line.lines, len(_OFFSETS))
+    finest = _SPACING * math.hypot(blur, _PIXEL)
+    steps = max(_STEPS, math.ceil(_REACH * float(widths.max()) / finest))
+    positions, spacing = _windows(line, widths, 2 * steps + 1)
+    lines = np.repeat(line.lines, 2 * steps + 1)
     rays = scene.scan_lines.rays(lines, positions.ravel())
     radiance = radiance_along(scene, rays)
     splats = LineSplats(lines, positions.ravel(), radiance * spacing.ravel())
@@ -93,17 +100,17 @@ def radiance_along(scene: Rendering, rays: Rays) -> Scalars:
     return radiance
 
 
-def _windows(line: LitLine, widths: Scalars) -> tuple[np.ndarray, np.ndarray]:
+def _windows(line: LitLine, widths: Scalars, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Spread samples over each stripe, up to half way to its neighbour in the scan line."""
     half = np.diff(line.positions) / 2
     joined = np.diff(line.lines) == 0
     room = np.where(joined, half, np.inf)
     below, above = np.concatenate([[np.inf], room]), np.concatenate([room, [np.inf]])
-    low = -np.minimum(-_OFFSETS[0] * widths, below)
-    high = np.minimum(_OFFSETS[-1] * widths, above)
-    share = np.linspace(0.0, 1.0, len(_OFFSETS))
+    low = -np.minimum(_REACH * widths, below)
+    high = np.minimum(_REACH * widths, above)
+    share = np.linspace(0.0, 1.0, count)
     positions = line.positions[:, None] + low[:, None] + share * (high - low)[:, None]
-    spacing = np.broadcast_to(((high - low) / (len(share) - 1))[:, None], positions.shape).copy()
+    spacing = np.broadcast_to(((high - low) / (count - 1))[:, None], positions.shape).copy()
     spacing[:, [0, -1]] /= 2  # trapezoid rule, which matters where a neighbour cuts the window
     return positions, spacing
 
