@@ -199,3 +199,38 @@ def test_each_of_two_lasers_has_its_own_stripe(sheets):
             right, count = right + np.sum(off < 1.5), count + len(off)
         assert right > 0.99 * count
         assert right > 0.97 * apart.sum()
+
+
+def test_round_white_spots_are_no_stripe_and_hide_none_beside():
+    """Bubbles out of focus drift past: white discs of 8 to 30 px with a halo."""
+    rng = np.random.default_rng(4)
+    places = rng.uniform((0, 10), (45, LENGTH - 10), (12, 2))
+    sizes = rng.uniform(4, 15, 12)
+    light = []
+    for i in range(12):
+        one = 8.0 + _line(115.0 + 0.5 * i + 0 * LINES, 40.0)
+        for (row, column), size in zip(places, sizes, strict=True):
+            away = np.hypot(ROWS - row - 2.5 * i, LINES - column)
+            one += 400.0 / (1.0 + np.exp(np.clip((away - size) / 0.8, -30, 30)))
+        light.append(np.minimum(one, 255.0))
+    off = np.abs(_errors(_extract(_film(light)), lambda i: 115.0 + 0.5 * i + 0 * LINES))
+    assert np.sum(off < 1.5) > 0.93 * 12 * LENGTH
+    assert np.mean(off < 1.5) > 0.97
+
+
+def test_a_faint_stripe_on_a_lit_textured_wall_keeps_its_width():
+    """The wall passes by under a lamp; the stripe has a tenth of its light."""
+    rng = np.random.default_rng(5)
+    paint = gaussian_filter(rng.standard_normal((HEIGHT + 200, LENGTH)), 9.0)
+    paint = 120.0 * (1.0 + 0.05 * paint / paint.std())
+    light = [
+        paint[3 * i : 3 * i + HEIGHT] + _line(80.0 + 0.4 * i + 0 * LINES, 12.0) for i in range(24)
+    ]
+    frames = _film(light)
+    murk = Murk()
+    learnt = murk.learn(frames, RIG)
+    assert learnt.shapes[0].width * learnt.shapes[0].binning == pytest.approx(1.3, rel=0.25)
+    stripes = list(murk.extract(frames, RIG, learnt))
+    off = np.abs(_errors(stripes, lambda i: 80.0 + 0.4 * i + 0 * LINES))
+    assert np.sum(off < 1.5) > 0.9 * 24 * LENGTH
+    assert np.mean(off < 1.5) > 0.97

@@ -38,8 +38,9 @@ _TRUSTED = 1e5
 """Pixels that this expectation is worth."""
 _HIGH = 10.0
 """Height from which what goes on over a few lines may be a small piece of surface."""
-_FEW = 20.0
-"""Ridges by chance that say as much of how clutter goes on as nothing known."""
+_BANDS, _FEW = 8, 3.0
+"""Bands of the picture in which clutter is counted apart, and ridges by chance in one of them that
+say as much of how it goes on as nothing known."""
 _MAXIMA = 3.0
 """Times that noise makes more low maxima than clutter is expected to; what is beyond is clutter."""
 _ENOUGH, _ALIKE = np.log(50.0), 4.0
@@ -103,7 +104,7 @@ def learn_rates(
         posteriors: Of each ridge being the stripe, of each laser.
     """
     counts, pixels = np.zeros(len(_HEIGHTS)), 0
-    going, by_chance = np.zeros(len(_HEIGHTS)), np.zeros(len(_HEIGHTS))
+    going, by_chance = np.zeros((2, _BANDS, len(_HEIGHTS)))
     for one, lasers in zip(ridges, posteriors, strict=True):
         stripe = np.any([one.are_long(posterior > 0.5) for posterior in lasers], axis=0)
         other = one.exist & ~stripe & ~one.are_within(stripe, one.reach)
@@ -111,14 +112,17 @@ def learn_rates(
         place = np.clip(place, 0, len(counts) - 1)
         go_on, expected = one.go_on(other)
         counts += np.bincount(place, minlength=len(counts))
-        going += np.bincount(place, go_on[other], minlength=len(counts))
-        by_chance += np.bincount(place, expected[other], minlength=len(counts))
+        band = (_BANDS * one.positions[other] / len(one.lines.levels)).astype(int)
+        band = np.clip(band, 0, _BANDS - 1)
+        np.add.at(going, (band, place), go_on[other])
+        np.add.at(by_chance, (band, place), expected[other])
         pixels += one.lines.levels.size
     rates = (counts / _STEP + _TRUSTED * usual_rates()) / (pixels + _TRUSTED)
     # Low ones are the noise's own maxima, and stripes that were missed.
     low = np.maximum(usual_rates(), rates / _MAXIMA)
     rates = np.where(_HEIGHTS < _KNEE, low, rates)
-    clumps = np.maximum((going + _FEW) / (by_chance + _FEW), 1.0)
+    # A stripe too faint to be told goes on as well, but in some bands of the picture alone.
+    clumps = np.maximum(np.median((going + _FEW) / (by_chance + _FEW), axis=0), 1.0)
     return rates * np.where(_HEIGHTS < _HIGH, clumps, 1.0)
 
 

@@ -10,6 +10,7 @@ from ..types.arrays import Indices, Pixels, Scalars
 from ..types.background import FixedPattern, Noise
 from ..types.frame import Frame
 from ..types.laser import Axis
+from .round_spots import find_round_spots
 from .row_noise import without_rows
 
 
@@ -59,6 +60,10 @@ class ScanLines:
             if one.first_row == frame.first_row and one.levels.shape == frame.image.shape:
                 own = one if axis == "y" else one.transposed
                 signal, hidden = levels - own.levels, own.overlay
+        stretch = float(frame.row_step) if axis == "y" else 1.0 / frame.row_step
+        spots = find_round_spots(levels, noise.white, stretch)
+        if spots is not None:
+            hidden = spots if hidden is None else hidden | spots
         if noise.rows and axis == "y":
             signal = without_rows(signal, noise)
         return cls(frame, axis, levels, signal, noise.white, hidden, slope=slope)

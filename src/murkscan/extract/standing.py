@@ -27,7 +27,7 @@ _NEAR_LINES, _FAR_LINES, _SLOPE = 8, 150, 1.0
 steepest slope of a thing [px a line]."""
 _GAP = 10
 """Scan lines over which a thing may be missing: an anode or a hole in a hull."""
-_OFTEN = 0.25
+_OFTEN = 0.5
 """Share of frames that must have the stripe elsewhere to tell anything: snow and a row's noise are
 taken for it in one of ten."""
 _BOTH, _ONLY = math.log(0.95 / 0.15), math.log(0.05 / 0.85)

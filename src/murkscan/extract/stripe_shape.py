@@ -25,6 +25,8 @@ _FOUND = 0.2
 filter is fed by the skirt as well."""
 _WINDOW = 10
 """Pixels on both sides of a stripe within which it sinks to half its height."""
+_TOGETHER = 16
+"""Neighbouring profiles that are averaged before their width is measured."""
 _WIDEST, _WANTED = 2.2, 1.1
 """Width above which more pixels are averaged, and the one that is wanted then [px]."""
 _WIDEST_BAND = 24.0
@@ -236,10 +238,17 @@ class _Fits:
         return cls(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(cls)))
 
 
-def _half_widths(levels: Shaped[np.ndarray, "h w"], lines: Indices, middle: Indices) -> Scalars:
-    """Give 1σ of Gaussians as wide at half height as stripes are; NaN where they end too late."""
+def _half_widths(
+    levels: Shaped[np.ndarray, "h w"], lines: Indices, middle: Indices
+) -> Float[np.ndarray, " groups"]:
+    """Give 1σ of Gaussians as wide at half height as stripes are; NaN where they end too late.
+
+    One faint profile is as wide as its noise; some of them together are as wide as the stripe.
+    """
     at = middle[:, None] + np.arange(-_WINDOW, _WINDOW + 1)
     scan = levels[np.clip(at, 0, len(levels) - 1), lines[:, None]].astype(float)
+    size = min(_TOGETHER, max(len(scan), 1))
+    scan = scan[: len(scan) // size * size].reshape(-1, size, scan.shape[1]).mean(axis=1)
     scan -= 0.25 * scan[:, [0, 1, -2, -1]].sum(axis=1, keepdims=True)
     scan /= np.maximum(scan[:, _WINDOW - 1 : _WINDOW + 2].max(axis=1, keepdims=True), 1e-9)
     sides = _half_crossing(scan[:, _WINDOW:]) + _half_crossing(scan[:, _WINDOW::-1])
