@@ -5,10 +5,14 @@ VENV := .venv
 BIN := $(VENV)/bin
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: demo test check bench docs viewer clean
+.PHONY: demo hello test check bench docs viewer clean
 
-demo: $(VENV)/core
-	$(BIN)/murkscan demo
+demo: hello $(VENV)/core
+	@$(BIN)/murkscan demo
+
+hello:
+	@test -e $(VENV)/core || echo "Once: an environment in $(VENV) with murkscan's libraries, about 0.9 GB," \
+	  "two to four minutes. Then the demo: about a minute and a half."
 
 test: check
 	$(BIN)/python -m pytest -n auto --dist loadfile
