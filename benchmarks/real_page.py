@@ -42,7 +42,7 @@ class SetResult:
         """Give its tables and lines."""
         lines: list[str] = []
         for words, part in self.parts().items():
-            lines += [f"### {words}", "", _HEAD, "|---|---|---|---|---|---|"]
+            lines += [f"## {words}", "", _HEAD, "|---|---|---|---|---|---|"]
             lines += [_row(name, figures) for name, figures in part.items()] + [""]
         for name, heights in self.heights.items():
             lines += [f"- {name}: {height}" for height in heights]
