@@ -6,13 +6,16 @@ import sys
 import murkscan
 
 NAMES = {
-    "BaselineAngle", "Camera", "ConstantSpeed", "ConstantStep", "Degenerate", "DeviceError",
-    "EstimationError", "FormatError", "Frame", "GaussianFit", "GrayGravity", "GridMesh",
-    "InputError", "Laser", "Mesh", "MissingDependency", "MissingResult", "MurkscanError",
-    "NotConverged", "NotEnoughData", "Plane", "PointCloud", "Poisson", "Pose", "PoseLog", "Profile",
-    "Murk", "Project", "RaySheet", "Rig", "Steger", "Stripe", "ThresholdSkeleton", "Trajectory",
-    "align_clouds", "load_cloud_file", "load_poses", "load_rig", "open_recording", "save_rig",
-    "scan", "thin_cloud",
+    "align_clouds", "Ball", "BaselineAngle", "Box", "calibrate_camera_from_photos",
+    "calibrate_laser_from_photos", "calibrate_mount_from_photos", "calibrate_port_from_photos",
+    "Camera", "check_in_scan", "Chessboard", "compare_scan", "ConstantSpeed", "ConstantStep",
+    "Degenerate", "DeviceError", "EstimationError", "FormatError", "Frame", "GaussianFit",
+    "GrayGravity", "GridMesh", "InputError", "Laser", "load_cloud_file", "load_poses",
+    "load_reference", "load_rig", "measure_cylinder", "measure_distance", "measure_plane",
+    "measure_points", "measure_sphere", "Mesh", "MissingDependency", "MissingResult", "Murk",
+    "MurkscanError", "NotConverged", "NotEnoughData", "open_recording", "Plane", "PointCloud",
+    "Poisson", "Pose", "PoseLog", "Profile", "Project", "RaySheet", "Rig", "save_rig", "scan",
+    "search_dents", "Steger", "Stripe", "thin_cloud", "ThresholdSkeleton", "Trajectory",
 }  # fmt: skip
 
 

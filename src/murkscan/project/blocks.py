@@ -3,11 +3,11 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-BLOCK = 200_000
-"""Points of a block, about: with those beside it some 230 MB while outliers are looked for, and as
+BLOCK = 150_000
+"""Points of a block, about: with those beside it some 200 MB while outliers are looked for, and as
 many blocks are looked at together as there are workers."""
-HALO = 50_000
-"""Points on either side of it that are looked at, too: seventy profiles of 720 points."""
+HALO = 40_000
+"""Points on either side of it that are looked at, too: fifty profiles of 720 points."""
 
 
 @dataclass(frozen=True)
