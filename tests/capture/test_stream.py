@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from murkscan.capture import copy_stream, is_stream, open_recording
-from murkscan.capture.stream import Timeline
+from murkscan.capture.stream import StreamTimes
 from murkscan.errors import DeviceError, InputError
 
 SDP = """v=0
@@ -123,7 +123,7 @@ times = st.one_of(st.none(), st.integers(-(10**6), 10**9).map(lambda n: n / 9000
 
 @given(st.lists(st.tuples(times, times), min_size=1, max_size=30))
 def test_recorded_times_always_grow_from_zero(packets):
-    timeline = Timeline()
+    timeline = StreamTimes()
     placed = [timeline.place(*packet) for packet in packets]
     decoded = [dts for _, dts in placed]
     assert decoded[0] == 0
@@ -133,7 +133,7 @@ def test_recorded_times_always_grow_from_zero(packets):
 
 @given(st.integers(0, 2**33), st.lists(st.integers(180, 90000), min_size=1, max_size=30))
 def test_the_spacing_is_the_streams_own(start, steps):
-    timeline = Timeline()
+    timeline = StreamTimes()
     ticks = np.cumsum([start, *steps])
     placed = [timeline.place(float(Fraction(int(t), 90000)), None)[0] for t in ticks]
     # Matroska keeps whole milliseconds.
@@ -141,6 +141,6 @@ def test_the_spacing_is_the_streams_own(start, steps):
 
 
 def test_a_sender_that_begins_anew_goes_on_where_it_stopped():
-    timeline = Timeline()
+    timeline = StreamTimes()
     placed = [timeline.place(time, None)[0] for time in (100.0, 100.04, 100.08, 0.0, 0.04)]
     assert placed == [0, 40, 80, 120, 160]

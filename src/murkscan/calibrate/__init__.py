@@ -6,7 +6,7 @@ from .board.chessboard import Margin as Margin
 from .board.contrast import laser_contrast as laser_contrast
 from .board.contrast import white_of_board as white_of_board
 from .board.corners import find_board as find_board
-from .board.coverage import Coverage as Coverage
+from .board.coverage import BoardCoverage as BoardCoverage
 from .board.coverage import cover as cover
 from .board.pose import locate_seen_board as locate_seen_board
 from .board.stripe import StripeOnBoard as StripeOnBoard

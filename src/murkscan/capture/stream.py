@@ -53,7 +53,7 @@ def copy_stream(
     with growing_video(out) as container, closing(_open(source, timeout)) as stream:
         video = stream.streams.video[0]
         target = container.add_stream_from_template(video)
-        timeline, frames, size = Timeline(), 0, 0
+        timeline, frames, size = StreamTimes(), 0, 0
         for packet in _packets(stream, source, timeout):
             _place(packet, timeline)
             if seconds is not None and packet.pts >= seconds * TICKS:
@@ -110,7 +110,7 @@ def _packets(stream: Any, source: str, timeout: float) -> Iterator[Any]:
         raise DeviceError(f"The stream {source} {why}; what came until then is kept.") from error
 
 
-class Timeline:
+class StreamTimes:
     """A recording's times: from 0, always growing, in ticks of the file."""
 
     _JUMP = TICKS
@@ -141,7 +141,7 @@ class Timeline:
         return max(ahead, self._last), self._last
 
 
-def _place(packet: Any, timeline: Timeline) -> None:
+def _place(packet: Any, timeline: StreamTimes) -> None:
     base = packet.time_base
     presented, decoded = (
         None if ticks is None else float(ticks * base) for ticks in (packet.pts, packet.dts)

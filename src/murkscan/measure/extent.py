@@ -23,7 +23,7 @@ from .surface import (
     rim_lengths,
     usual_noise,
 )
-from .trust import Trust
+from .trust import FitUncertainty
 
 _TILT = 0.05
 """Standard deviation of a cloud's normals [rad], to which they are smoothed."""
@@ -116,7 +116,7 @@ def measure_area(mesh: Mesh, sample: Sample) -> Measurement:
 
 
 def measure_volume(
-    mesh: Mesh, sample: Sample, plane: Plane, *, trust: tuple[Trust, Vector] | None = None
+    mesh: Mesh, sample: Sample, plane: Plane, *, trust: tuple[FitUncertainty, Vector] | None = None
 ) -> Measurement:
     """Give the volume between a surface and a plane: what stands out less what lies behind.
 
@@ -164,7 +164,7 @@ def _common_volume(
     plane: Plane,
     shadows: Scalars,
     base: float,
-    trust: tuple[Trust, Vector] | None,
+    trust: tuple[FitUncertainty, Vector] | None,
 ) -> float | None:
     """Give how the rig's errors change the volume, by a surface that they move as a whole [m³]."""
     if (modes := rig_modes(sample)) is None:

@@ -15,7 +15,7 @@ from ..types.measurement import Measurement
 from ..types.plane import Plane, span_plane
 from ..types.quantity import Quantity
 from .sample import Sample
-from .trust import LinearMap, Trust, trust_fit
+from .trust import FitUncertainty, LinearMap, trust_fit
 
 _FEWEST_PROFILES = 3
 """Profiles below which a fit has nothing across the sheet of light to agree with."""
@@ -40,7 +40,7 @@ def measure_plane(sample: Sample) -> Measurement:
     return _tell("plane", fit, trust, named, ("m", "", "", ""), how)
 
 
-def trust_plane(sample: Sample) -> tuple[ShapeFit[Plane], Trust]:
+def trust_plane(sample: Sample) -> tuple[ShapeFit[Plane], FitUncertainty]:
     """Fit a plane whose normal points to the camera, and find how far to trust it.
 
     Raises:
@@ -120,7 +120,7 @@ def _require_profiles(sample: Sample, what: str) -> None:
 def _tell(
     kind: str,
     fit: ShapeFit[AnyShape],
-    trust: Trust,
+    trust: FitUncertainty,
     values: dict[str, float],
     units: Sequence[str],
     how: LinearMap,

@@ -17,7 +17,7 @@ from .sample import Sample
 
 
 @dataclass(frozen=True, eq=False)
-class Section:
+class CrossSection:
     """The lines in which a plane cuts a surface."""
 
     plane: Plane
@@ -45,7 +45,7 @@ class Section:
         return tuple((line - self.origin) @ self.axes.T for line in self.lines)
 
 
-def cut_section(mesh: Mesh, plane: Plane) -> Section:
+def cut_section(mesh: Mesh, plane: Plane) -> CrossSection:
     """Cut a surface by a plane.
 
     Args:
@@ -66,11 +66,11 @@ def cut_section(mesh: Mesh, plane: Plane) -> Section:
             "a point on the surface with --point-m."
         )
     edges, places = _crossings(mesh, heights, above, cut)
-    return Section(plane, tuple(places[order] for order in _join(edges)))
+    return CrossSection(plane, tuple(places[order] for order in _join(edges)))
 
 
 def measure_section(
-    section: Section, sample: Sample
+    section: CrossSection, sample: Sample
 ) -> tuple[Measurement, list[Float[np.ndarray, " _"]]]:
     """Give the size of a section, and the standard deviation of each of its corners.
 

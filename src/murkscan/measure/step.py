@@ -13,7 +13,7 @@ from ..types.plane import Plane, span_plane
 from ..types.quantity import Quantity
 from .fits import trust_plane
 from .sample import Sample
-from .trust import Trust
+from .trust import FitUncertainty
 
 _MOST_SHIFTED = 1000
 """Points of each plane for which the rig's errors are traced."""
@@ -79,7 +79,7 @@ def _common_step(
     return float(np.linalg.norm(modes[1]))
 
 
-def _angle(parts: list[tuple[ShapeFit[Plane], Trust]]) -> Quantity:
+def _angle(parts: list[tuple[ShapeFit[Plane], FitUncertainty]]) -> Quantity:
     """Give the angle between the planes fitted one by one, with how well it is known."""
     (one, trust_one), (other, trust_other) = parts
     angle = math.acos(min(float(one.shape.normal @ other.shape.normal), 1.0))

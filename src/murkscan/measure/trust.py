@@ -23,7 +23,7 @@ LinearMap = Float[np.ndarray, "q p"]
 
 
 @dataclass(frozen=True, eq=False)
-class Trust:
+class FitUncertainty:
     """Both parts of the uncertainty of a fit's parameters."""
 
     independent: Float[np.ndarray, "p p"]
@@ -59,7 +59,7 @@ class Trust:
         )
 
 
-def trust_fit(fit: ShapeFit[AnyShape], sample: Sample) -> Trust:
+def trust_fit(fit: ShapeFit[AnyShape], sample: Sample) -> FitUncertainty:
     """Find how far a fit's parameters are to be trusted.
 
     Args:
@@ -71,7 +71,7 @@ def trust_fit(fit: ShapeFit[AnyShape], sample: Sample) -> Trust:
         fit.slopes[inside], fit.residuals[inside], sample.profile[inside], sample.line[inside]
     )
     matrix = independent.matrix + _blur_part(fit)
-    return Trust(matrix, independent.degrees, _common_moves(fit, sample))
+    return FitUncertainty(matrix, independent.degrees, _common_moves(fit, sample))
 
 
 def _blur_part(fit: ShapeFit[AnyShape]) -> Float[np.ndarray, "p p"]:

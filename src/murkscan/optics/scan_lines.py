@@ -16,7 +16,7 @@ _TOUCH = 5e-5
 
 
 @dataclass(frozen=True, eq=False)
-class ScanLines:
+class SheetScanLines:
     """Image columns where the laser's axis is y, rows where it is x."""
 
     camera: Camera

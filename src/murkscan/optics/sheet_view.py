@@ -8,7 +8,7 @@ from ..types.arrays import Directions, Indices, Mask, Pixels, Points, Scalars
 from .beam import Beam
 from .glow import sheet_glow
 from .medium import Medium
-from .scan_lines import ScanLines
+from .scan_lines import SheetScanLines
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +41,7 @@ class SheetView:
         return np.isfinite(self.camera_range + self.laser_range)
 
 
-def view_sheet(beam: Beam, scan_lines: ScanLines, pixels: Pixels) -> SheetView:
+def view_sheet(beam: Beam, scan_lines: SheetScanLines, pixels: Pixels) -> SheetView:
     """Follow the rays of pixels [px] to the sheet."""
     rays = scan_lines.rays(*scan_lines.split(pixels))
     points = scan_lines.meet_sheet(rays)

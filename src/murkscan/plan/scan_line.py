@@ -8,7 +8,7 @@ from jaxtyping import Float
 from scipy.special import ndtr
 
 from ..optics.beam import Beam
-from ..optics.scan_lines import ScanLines
+from ..optics.scan_lines import SheetScanLines
 from ..optics.sensor import vignetting
 from ..optics.sheet_view import SheetView, glow_of, view_sheet
 from ..optics.spread import Spread
@@ -63,7 +63,7 @@ class LineOfSight:
 
     conditions: Conditions
     beam: Beam
-    scan_lines: ScanLines
+    scan_lines: SheetScanLines
     line: int
     electrons: float
     """Electrons that 1 W/m²/sr on the optical axis makes in a pixel."""
@@ -82,7 +82,7 @@ class LineOfSight:
         return cls(
             conditions,
             Beam.of(rig.laser(laser), conditions.light, index),
-            ScanLines(rig.camera, rig.laser(laser), index),
+            SheetScanLines(rig.camera, rig.laser(laser), index),
             line,
             # Radiance falls by the square of the index where light leaves the water for the lens.
             sensor.electrons_per_radiance(rig.wavelength) / index**2,

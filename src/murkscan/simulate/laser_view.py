@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..optics.beam import Beam
-from ..optics.scan_lines import ScanLines
+from ..optics.scan_lines import SheetScanLines
 from ..optics.sensor import Picture
 from ..optics.sheet_view import SheetView, glow_of, view_sheet
 from ..optics.spread import Spread
@@ -26,7 +26,7 @@ class LaserView:
     """One laser as the camera sees it, apart from what stands in its light."""
 
     beam: Beam
-    scan_lines: ScanLines
+    scan_lines: SheetScanLines
     view: SheetView
     """What each pixel sees of the sheet, row by row."""
     glow: Picture
@@ -45,7 +45,7 @@ class LaserView:
 def view_laser(scene: Scene, number: int) -> LaserView:
     """Make one laser ready."""
     laser = scene.rig.lasers[number]
-    scan_lines = ScanLines(scene.rig.camera, laser, scene.index)
+    scan_lines = SheetScanLines(scene.rig.camera, laser, scene.index)
     beam = Beam.of(laser, scene.light, scene.index)
     width, height = scene.rig.camera.size
     v, u = np.mgrid[:height, :width].reshape(2, -1).astype(float)
@@ -65,7 +65,7 @@ def _glow_at(scene: Scene, beam: Beam, view: SheetView) -> Scalars:
 
 
 def _blur_of(
-    scene: Scene, spread: Spread, beam: Beam, scan_lines: ScanLines, view: SheetView
+    scene: Scene, spread: Spread, beam: Beam, scan_lines: SheetScanLines, view: SheetView
 ) -> WaterBlur:
     scale = scan_lines.pixels_per_tangent()
 

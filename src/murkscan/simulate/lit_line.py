@@ -11,7 +11,7 @@ import numpy as np
 
 from ..geometry.ray_casting import RayCaster
 from ..optics.beam import Beam
-from ..optics.scan_lines import ScanLines
+from ..optics.scan_lines import SheetScanLines
 from ..types.arrays import Indices, Mask, Points, Scalars
 from ..types.pose import Pose
 from ..types.rays import Rays
@@ -93,7 +93,7 @@ def to_world(rays: Rays, world_from_camera: Pose) -> Rays:
     return Rays(world_from_camera @ rays.origins, away)
 
 
-def cast_fan(beam: Beam, scan_lines: ScanLines, caster: RayCaster, pose: Pose) -> Fall:
+def cast_fan(beam: Beam, scan_lines: SheetScanLines, caster: RayCaster, pose: Pose) -> Fall:
     """Follow the fan's rays to the surface; the pose is world_from_camera."""
     count = _RAYS_A_LINE * scan_lines.count
     angles = np.linspace(-beam.fan.half_angle, beam.fan.half_angle, count)
@@ -103,7 +103,7 @@ def cast_fan(beam: Beam, scan_lines: ScanLines, caster: RayCaster, pose: Pose) -
 
 
 def find_lit_line(
-    beam: Beam, scan_lines: ScanLines, caster: RayCaster, pose: Pose, fall: Fall
+    beam: Beam, scan_lines: SheetScanLines, caster: RayCaster, pose: Pose, fall: Fall
 ) -> LitLine:
     """Find the true centres that the camera sees; the pose is world_from_camera."""
     met = np.flatnonzero(fall.face >= 0)
@@ -115,7 +115,7 @@ def find_lit_line(
     return _keep_one_of_same(found)
 
 
-def cross_scan_lines(scan_lines: ScanLines, number: Indices, points: Points) -> Crossings:
+def cross_scan_lines(scan_lines: SheetScanLines, number: Indices, points: Points) -> Crossings:
     """Find between which of a line's points it crosses each scan line, and where.
 
     Args:
@@ -138,7 +138,7 @@ def cross_scan_lines(scan_lines: ScanLines, number: Indices, points: Points) -> 
 
 
 def _settle(
-    scan_lines: ScanLines,
+    scan_lines: SheetScanLines,
     caster: RayCaster,
     pose: Pose,
     lines: Indices,
@@ -158,7 +158,7 @@ def _settle(
 
 
 def _meet_planes(
-    scan_lines: ScanLines,
+    scan_lines: SheetScanLines,
     caster: RayCaster,
     pose: Pose,
     lines: Indices,
@@ -184,7 +184,7 @@ def _meet_planes(
 
 
 def _is_seen(
-    beam: Beam, scan_lines: ScanLines, caster: RayCaster, pose: Pose, found: LitLine
+    beam: Beam, scan_lines: SheetScanLines, caster: RayCaster, pose: Pose, found: LitLine
 ) -> Mask:
     """Tell which centres lie on the surface, in the picture, in light and in sight."""
     length = scan_lines.camera.size["xy".index(scan_lines.laser.axis)]

@@ -9,7 +9,7 @@ from jaxtyping import Float32
 from .._kernels.splat import LineSplats, splat_on_lines
 from ..geometry.ray_casting import Hits
 from ..optics.beam import Beam
-from ..optics.scan_lines import ScanLines
+from ..optics.scan_lines import SheetScanLines
 from ..types.arrays import Points, Scalars
 from ..types.pose import Pose
 from ..types.rays import Rays
@@ -37,7 +37,7 @@ class Rendering:
     """All that light on a surface depends on in one frame."""
 
     beam: Beam
-    scan_lines: ScanLines
+    scan_lines: SheetScanLines
     surroundings: Surroundings
     attenuation: float
     """Beam attenuation of the water [1/m]."""

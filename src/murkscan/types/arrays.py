@@ -20,7 +20,7 @@ FrameNumbers = UInt32[np.ndarray, "n"]
 """Index of a frame in its recording, one an item."""
 SignedFrameNumbers = Int32[np.ndarray, "n"]
 """The same as a cloud's file keeps it."""
-ScanLines = Int32[np.ndarray, "n"]
+ScanLineNumbers = Int32[np.ndarray, "n"]
 """Number of a scan line: an image row or column across which a stripe is looked for."""
 SmallNumbers = UInt8[np.ndarray, "n"]
 """A number from 0 to 255, one an item."""

@@ -9,7 +9,7 @@ from .arrays import (
     Normals,
     Points,
     Ratios,
-    ScanLines,
+    ScanLineNumbers,
     SignedFrameNumbers,
     SmallNumbers,
 )
@@ -39,7 +39,7 @@ class PointCloud(Table):
     [m]; 0 where the rig states none."""
     frame: SignedFrameNumbers
     """Index of the frame that saw the point."""
-    scan_line: ScanLines
+    scan_line: ScanLineNumbers
     """Image column (stripe along rows) or row (stripe along columns) that saw the point [px]."""
     laser: SmallNumbers
     """Number of the laser in the rig."""

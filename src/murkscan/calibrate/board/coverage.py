@@ -12,7 +12,7 @@ _ROWS, _COLUMNS = ("top", "middle", "bottom"), ("left", "middle", "right")
 
 
 @dataclass(frozen=True)
-class Coverage:
+class BoardCoverage:
     """How much of the picture was used."""
 
     share: float
@@ -21,7 +21,7 @@ class Coverage:
     """Where most cells are empty, in words that follow "the board"."""
 
 
-def cover(corners: Pixels, size: tuple[int, int]) -> Coverage:
+def cover(corners: Pixels, size: tuple[int, int]) -> BoardCoverage:
     """Tell how much of a picture of this width and height corners cover."""
     width, height = size
     column, row = (corners / [width, height] * _CELLS).astype(int).clip(0, _CELLS - 1).T
@@ -32,4 +32,4 @@ def cover(corners: Pixels, size: tuple[int, int]) -> Coverage:
     shares = np.add.reduceat(np.add.reduceat(seen, thirds, 0), thirds, 1) / sizes
     place = _ROWS[int(np.argmin(shares)) // 3], _COLUMNS[int(np.argmin(shares)) % 3]
     where = "in the middle" if place == ("middle", "middle") else f"at the {' '.join(place)}"
-    return Coverage(float(seen.mean()), where)
+    return BoardCoverage(float(seen.mean()), where)
