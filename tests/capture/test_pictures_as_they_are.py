@@ -36,6 +36,17 @@ def test_pictures_that_are_not_read_keep_their_numbers_and_are_told(tmp_path):
     assert recording.num_frames == 24
 
 
+@pytest.mark.parametrize(("top", "words"), [(4095, "12 of 16"), (65535, None)])
+def test_bits_that_are_not_used_are_told_and_nothing_is_stretched(top, words, tmp_path):
+    stripe = np.zeros((48, 64), np.uint16)
+    stripe[20:23] = top
+    write_image(tmp_path / "a.png", stripe)
+    recording, frames, _ = read(tmp_path)
+    np.testing.assert_array_equal(frames[0].image, stripe)
+    assert any("not stretched" in remark for remark in recording.remarks) == (words is not None)
+    assert words is None or words in recording.remarks[0]
+
+
 def test_a_raw_picture_beside_its_own_jpeg_is_no_picture_of_its_own(tmp_path):
     for number in range(3):
         write_image(tmp_path / f"{number}.jpg", picture(number))

@@ -18,6 +18,8 @@ from .field_order import RUN, Fields, decide_order, say_order
 from .folder import TIMES, ImageFolder, list_pictures, locate, read_grey
 
 _PAGED = (".tif", ".tiff")
+_DEEP = 1 << 14
+"""Grey levels below which a camera of 10, 12 or 14 bits has written into 16."""
 _CLOCK = re.compile(r"\d{10,19}(\.\d+)?")
 """A time since 1970 in a picture's name: seconds, or one of the smaller units."""
 
@@ -28,7 +30,8 @@ def open_folder(path: Path, wavelength: float, fps: float | None, fields: Fields
     files, pages = _turn_pages(path, names)
     times, clock = _find_times(path, files, pages, fps)
     read = list(zip(files, pages, strict=True))
-    height, width = _first_image(path, read, wavelength).shape
+    first = _first_image(path, read, wavelength)
+    height, width = first.shape
     order = decide_order(fields, lambda count: _runs(path, read, wavelength, count))
     return ImageFolder(
         path=path,
@@ -36,7 +39,12 @@ def open_folder(path: Path, wavelength: float, fps: float | None, fields: Fields
         order=order,
         is_timed=bool(clock) or fps is not None,
         num_frames=len(files) * (1 if order == "progressive" else 2),
-        remarks=(*say_order(order, fields), *_say_odd(path, names, files), *clock[1:]),
+        remarks=(
+            *say_order(order, fields),
+            *_say_odd(path, names, files),
+            *_say_bits(first),
+            *clock[1:],
+        ),
         files=files,
         pages=pages,
         times=times,
@@ -105,6 +113,17 @@ def _say_odd(path: Path, names: Sequence[str], files: Sequence[str]) -> tuple[st
             f"a note asks to turn its pictures by {turn} degrees; they stay as they were recorded"
         )
     return tuple(said)
+
+
+def _say_bits(image: Image) -> tuple[str, ...]:
+    """Say so where a picture leaves the upper bits of its numbers empty."""
+    top = int(image.max(initial=0))
+    if image.dtype != np.uint16 or not 0 < top < _DEEP:
+        return ()
+    return (
+        f"its pictures use {max(top.bit_length(), 8)} of 16 bits; grey levels stay as they are, "
+        "not stretched",
+    )
 
 
 def _first_image(path: Path, read: Sequence[tuple[str, int]], wavelength: float) -> Image:
