@@ -94,6 +94,7 @@ def model_of_scan(
         views=standard_views(trajectory),
         spacing=spacing,
         shift_field=shift_field,
+        pose_errors=None if path is None else path.errors,
         note=_note(total, cloud[:count], mesh, surface),
     )
 

@@ -75,6 +75,8 @@ class Model:
     """Usual distance between neighbouring vertices [m]."""
     shift_field: ShiftField | None = None
     """How far points move with the rig's errors; None where the rig states none."""
+    pose_errors: Float[np.ndarray, "positions 6 errors"] | None = None
+    """Errors of the path's poses, as `Trajectory.errors`; None where the motion states none."""
     note: str = ""
     """What must be said of it in plain words, such as that points were left out."""
 
@@ -109,7 +111,8 @@ class Model:
             target_from_world: Where it goes.
             views: The views of the other one, in its world.
         """
-        known = len(self.attitudes) > 0
+        known, errors = len(self.attitudes) > 0, self.pose_errors
+        turn = np.kron(np.eye(2), target_from_world.rotation)
         return replace(
             self,
             vertices=target_from_world @ self.vertices,
@@ -117,6 +120,7 @@ class Model:
             normals=self.normals @ target_from_world.rotation.T,
             path=target_from_world @ self.path,
             attitudes=target_from_world.turn(self.attitudes) if known else self.attitudes,
+            pose_errors=None if errors is None else turn @ errors,
             views=views,
         )
 

@@ -17,6 +17,8 @@ from .model import Layer, Model
 from .packing import pack, pack_directions, pack_moves, pack_positions, pack_values
 from .shift_field import ShiftField
 
+_KNOTS = 500
+"""Profiles at which the errors of poses are kept: some hundreds of kilobytes."""
 _SHARE = 1.0
 """Percent of a layer's values at each end that may lie beyond the colours."""
 _DEPTH_MAP = "viridis_r"
@@ -122,6 +124,7 @@ def _pack_model(model: Model) -> tuple[dict[str, Any], dict[str, str]]:
         "path": _rounded(model.path - np.array(positions.low), 6),
         "attitudes": _rounded(model.attitudes, 9),
         "shifts": _about_shifts(model.shift_field),
+        "poseErrors": _about_pose_errors(model.pose_errors),
         "views": {view.name: _rounded(view.view_from_world, 9) for view in model.views},
     }
     return about, blobs
@@ -145,6 +148,21 @@ def _about_shifts(field: ShiftField | None) -> dict[str, Any] | None:
         "powers": field.powers.tolist(),
         "coefficients": _rounded(field.coefficients, 9),
     }
+
+
+def _about_pose_errors(errors: np.ndarray | None) -> dict[str, Any] | None:
+    """Describe the errors of the poses, of long scans at every so many profiles."""
+    if errors is None or errors.shape[2] == 0:
+        return None
+    last = len(errors) - 1
+    profiles = np.unique(np.linspace(0, last, min(len(errors), _KNOTS)).astype(int))
+    columns = [
+        [mode, axis, _rounded(errors[profiles, axis, mode], 9)]
+        for mode in range(errors.shape[2])
+        for axis in range(6)
+        if errors[:, axis, mode].any()
+    ]
+    return {"profiles": profiles.tolist(), "modes": errors.shape[2], "columns": columns}
 
 
 def _about_depth(model: Model) -> dict[str, Any]:

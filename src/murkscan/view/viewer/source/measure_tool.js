@@ -37,8 +37,8 @@ export function measureTool(app) {
       }));
     if (off !== null) {
       item.append(make("small", {
-        textContent: shared === null ? "What points share, by calibration and alignment, is not in it: murkscan measure distance tells."
-          : `The calibration's part of it: ± ${length(shared)}.`,
+        textContent: shared === null ? "What points share, by calibration, motion and alignment, is not in it: murkscan measure distance tells."
+          : `The part of calibration and motion in it: ± ${length(shared)}.`,
       }));
     }
     item.append(copyButton(commandOf(first, second)));

@@ -1,14 +1,36 @@
-// How the rig's own errors stretch a distance: what shift_field.py has fitted, at two points.
+// How the errors of rig and motion stretch a distance: what shift_field.py has fitted, at two points,
+// and what the poses are off by.
 
-import { dot, minus } from "./vectors.js";
+import { cross, dot, minus } from "./vectors.js";
 
-// Standard deviation of a distance from what its ends share [m]; null where the rig states nothing.
+// Standard deviation of a distance from what its ends share [m]; null where nothing is stated.
 export function stretchOf(model, ends, profiles, along) {
-  const { shifts, path, attitudes } = model;
-  if (!shifts || !path.length) return null;
-  const [first, second] = ends.map((place, end) =>
-    shiftsAt(shifts, place, path[profiles[end]], attitudes[profiles[end]]));
+  const { shifts, path, attitudes, poseErrors } = model;
+  if (!(shifts || poseErrors) || !path.length) return null;
+  const [first, second] = ends.map((place, end) => {
+    const [profile, camera] = [profiles[end], path[profiles[end]]];
+    return [
+      ...(shifts ? shiftsAt(shifts, place, camera, attitudes[profile]) : []),
+      ...(poseErrors ? movesAt(poseErrors, profile, minus(place, camera)) : []),
+    ];
+  });
   return Math.hypot(...first.map((shift, error) => dot(along, minus(second[error], shift))));
+}
+
+// How each error of the poses moves a point at the end of an arm from the camera [m].
+function movesAt({ profiles, modes, columns }, profile, arm) {
+  const after = profiles.findIndex((knot) => knot >= profile);
+  const before = Math.max(after - 1, 0);
+  const share = after > before
+    ? (profile - profiles[before]) / (profiles[after] - profiles[before]) : 0;
+  const errors = Array.from({ length: modes }, () => [0, 0, 0, 0, 0, 0]);
+  for (const [mode, axis, values] of columns) {
+    errors[mode][axis] = values[before] + share * (values[after] - values[before]);
+  }
+  return errors.map((error) => {
+    const turned = cross(error.slice(3), arm);
+    return turned.map((part, axis) => part + error[axis]);
+  });
 }
 
 // One triple an error, in the world [m].
