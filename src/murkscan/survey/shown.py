@@ -1,6 +1,7 @@
 """What the page shows of a scan, from what its stages have left."""
 
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -35,6 +36,9 @@ def load_model(project: Project, *, most: int, deviation: str = DEVIATION) -> Mo
     if total == 0:
         return None
     recording = project.load_scan().recording
+    trajectory = find_trajectory(project)
+    if recording is None and trajectory is not None:  # its alignment's errors belong to them
+        trajectory = replace(trajectory, errors=None)
     mesh = cluster_vertices(project.load_mesh(), most) if has_surface(project) else None
     rows = choose_fairly(total, most)
     if mesh is not None and mesh.points is not None:
@@ -45,7 +49,7 @@ def load_model(project: Project, *, most: int, deviation: str = DEVIATION) -> Mo
         rows=rows,
         num_points=total,
         mesh=mesh,
-        trajectory=find_trajectory(project),
+        trajectory=trajectory,
         frames=find_frame_times(project),
         is_timed=recording is not None and recording.is_timed,
         shift_field=None if recording is None else trace_shift_field(project),

@@ -125,6 +125,7 @@ def _pack_model(model: Model) -> tuple[dict[str, Any], dict[str, str]]:
         "attitudes": _rounded(model.attitudes, 9),
         "shifts": _about_shifts(model.shift_field),
         "poseErrors": _about_pose_errors(model.pose_errors),
+        "sharing": _name_shared(model),
         "views": {view.name: _rounded(view.view_from_world, 9) for view in model.views},
     }
     return about, blobs
@@ -148,6 +149,15 @@ def _about_shifts(field: ShiftField | None) -> dict[str, Any] | None:
         "powers": field.powers.tolist(),
         "coefficients": _rounded(field.coefficients, 9),
     }
+
+
+def _name_shared(model: Model) -> str:
+    """Say whose errors a distance's shared part is made of."""
+    if model.shift_field is not None and model.pose_errors is not None:
+        return "The part of calibration and motion in it"
+    if model.pose_errors is not None:
+        return "The motion's part of it, without the calibration's"
+    return "The calibration's part of it, without the motion's"
 
 
 def _about_pose_errors(errors: np.ndarray | None) -> dict[str, Any] | None:

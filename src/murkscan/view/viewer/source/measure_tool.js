@@ -38,7 +38,7 @@ export function measureTool(app) {
     if (off !== null) {
       item.append(make("small", {
         textContent: shared === null ? "What points share, by calibration, motion and alignment, is not in it: murkscan measure distance tells."
-          : `The part of calibration and motion in it: ± ${length(shared)}.`,
+          : `${app.model.sharing}: ± ${length(shared)}.`,
       }));
     }
     item.append(copyButton(commandOf(first, second)));
