@@ -27,7 +27,7 @@ from murkscan.project import (
     find_frame_times,
     find_trajectory,
 )
-from murkscan.project.blocks import cut_blocks
+from murkscan.project.blocks import cut_blocks, trim_beside
 from murkscan.project.merged import load_merged_errors
 from murkscan.survey.cloud import build_cloud
 from murkscan.survey.export import export_cloud
@@ -134,6 +134,18 @@ def test_blocks_hold_every_part_once_and_see_what_lies_beside_them():
             assert block.after or block.parts[-1] == 238
     assert len(blocks) == 1
     assert cut_blocks({}) == []
+
+
+def test_beside_a_block_lie_whole_profiles_and_two_dozen_of_wide_ones():
+    for width, profiles in ((500, 59), (2000, 24)):
+        cloud = scan_cloud(plane, spacing=0.12 / 40, num_rows=5)[:1]
+        wide = cloud[np.zeros(40_000 if width == 500 else 100_000, int)]
+        wide = replace(wide, frame=np.arange(len(wide), dtype=np.int32) // width)
+        before, after = trim_beside(wide, wide)
+        for part, edge in ((before, wide.frame[-1]), (after, 0)):
+            frames, sizes = np.unique(part.frame, return_counts=True)
+            assert (set(sizes), abs(len(frames) - profiles) <= 1) == ({width}, True)
+            assert edge in frames
 
 
 def test_an_export_holds_the_cloud(project, tmp_path, cloud):

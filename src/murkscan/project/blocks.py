@@ -2,12 +2,22 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import TypeVar
 
-BLOCK = 150_000
-"""Points of a block, about: with those beside it some 200 MB while outliers are looked for, and as
+import numpy as np
+
+from ..types.cloud import PointCloud
+from ..types.profile import Profile
+
+T = TypeVar("T", Profile, PointCloud)
+
+BLOCK = 100_000
+"""Points of a block, about: with those beside it some 150 MB while outliers are looked for, and as
 many blocks are looked at together as there are workers."""
-HALO = 40_000
-"""Points on either side of it that are looked at, too: fifty profiles of 720 points."""
+_HALO = 30_000
+"""Points on either side of it that are looked at, too: forty profiles of 720 points."""
+_PROFILES = 24
+"""Profiles on either side, at least: a surface is evened out over eight."""
 
 
 @dataclass(frozen=True)
@@ -50,8 +60,19 @@ def _beside(numbers: Iterable[int], sizes: Mapping[int, int]) -> tuple[int, ...]
     """Take parts until they have points enough."""
     taken, count = list[int](), 0
     for number in numbers:
-        if count >= HALO:
+        if count >= _HALO:
             break
         taken.append(number)
         count += sizes[number]
     return tuple(taken)
+
+
+def trim_beside(before: T, after: T) -> tuple[T, T]:
+    """Keep of what was taken on either side what is looked at."""
+    if len(before) > _HALO:
+        least = np.unique(before.frame)[-_PROFILES:][0]
+        before = before[before.frame > min(int(before.frame[-_HALO]), int(least) - 1)]
+    if len(after) > _HALO:
+        most = np.unique(after.frame)[:_PROFILES][-1]
+        after = after[after.frame < max(int(after.frame[_HALO]), int(most) + 1)]
+    return before, after

@@ -22,7 +22,7 @@ from ..project import (
     as_it_moves,
     describe,
 )
-from ..project.blocks import BLOCK, HALO, Block, cut_blocks
+from ..project.blocks import BLOCK, Block, cut_blocks, trim_beside
 from ..types.cloud import PointCloud
 from ..types.cloud_part import CloudPart
 from ..types.laser import Axis
@@ -114,10 +114,7 @@ class _Job:
     def _load(self, block: Block, trajectory: Trajectory) -> tuple[Profile, list[int]]:
         """Load a block; gives the sizes of what lies before it, of its parts, of what follows."""
         before, after = (self._join(numbers, trajectory) for numbers in (block.before, block.after))
-        if len(before) > HALO:
-            before = before[before.frame > before.frame[-HALO]]
-        if len(after) > HALO:
-            after = after[after.frame < after.frame[HALO]]
+        before, after = trim_beside(before, after)
         parts = [before, *(self._join([one], trajectory) for one in block.parts), after]
         return Profile.concatenate(parts), list(map(len, parts))
 

@@ -11,7 +11,7 @@ from ..distribute import AbstractExecutor, Threads
 from ..io.mesh_files import check_mesh_suffix, save_mesh
 from ..mesh import AbstractMesher, AbstractPaint, ByDepth, close_holes, decimate, join_tiles
 from ..project import CLOUD, MESH, MeshResult, Project, describe, find_trajectory, is_merged
-from ..project.blocks import BLOCK, HALO, Block, cut_blocks
+from ..project.blocks import BLOCK, Block, cut_blocks, trim_beside
 from ..types.cloud import PointCloud
 from ..types.mesh import Mesh
 from .export import require_outside_stages
@@ -154,10 +154,7 @@ class _TileJob:
             PointCloud.concatenate([self.project.load_kept_part(number) for number in numbers])
             for numbers in (block.before, block.parts, block.after)
         )
-        if len(before) > HALO:
-            before = before[before.frame > before.frame[-HALO]]
-        if len(after) > HALO:
-            after = after[after.frame < after.frame[HALO]]
+        before, after = trim_beside(before, after)
         cloud, start = PointCloud.concatenate([before, own, after]), len(before)
         return self.mesher.mesh_tile(cloud, slice(start, start + len(own)))
 
