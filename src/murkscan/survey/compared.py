@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 from ..errors import Degenerate
 from ..geometry.alignment import Alignment
 from ..geometry.alignment_words import describe_alignment, turn_round
-from ..measure.reference import Reference, lay_on
 from ..project import AlignmentResult, Project
 from ..view import Model
 from .shown import choose_points, folder_of, has_surface, load_model
@@ -73,6 +72,9 @@ def compare_models(
 
 def _lay(other: Project, project: Project) -> Alignment:
     try:
+        # Here, since a scan that begins would load all measures for what it does not do.
+        from ..measure.reference import Reference, lay_on
+
         reference = Reference(other.load_mesh(), name=str(other.root))
         laid = lay_on(reference, choose_points(project, _SAMPLE))
     except Degenerate as error:
