@@ -103,8 +103,9 @@ def test_a_cluster_has_its_own_workers():
         Dask("tcp://127.0.0.1:1", workers=2)
 
 
-def test_a_scheduler_that_does_not_answer_is_told_with_the_cure():
+def test_a_scheduler_that_does_not_answer_is_told_with_the_cure(monkeypatch):
     pytest.importorskip("distributed", reason="the extra [cluster] is not installed")
+    monkeypatch.setattr("murkscan.distribute.dask._PATIENCE", 1)
     with pytest.raises(DeviceError, match="dask scheduler"):
         list(Dask("tcp://127.0.0.1:9").map(square, [1]))
 
