@@ -41,9 +41,8 @@ _LOBE = 0.35
 """Share of a ridge's height that its own side lobes reach, with noise on them."""
 _FAINT, _MARGIN = 2.5, 1.2
 """Score from which a ridge may be a stripe's blur, and how much higher than expected such blur may
-be: where a stripe is rolled by 45° it is 1.2 times as high. With 1.4, one in seven hundred true ends
-more is lost at c = 1.5 /m, with 1.0 one in six hundred false ones more is given
-(benchmarks/murk.py, seed 0)."""
+be: where a stripe is rolled by 45° it is 1.2 times as high. At c = 1.5 /m, 1.4 loses one in 230 of
+the true centres more, and 1.0 gives one in 550 more that are false (benchmarks/murk.py, seed 0)."""
 _SURE = 8.0
 """Score from which a ridge is surely there, whatever it is."""
 _LONG, _STEADY = 24, 3.0
