@@ -255,6 +255,14 @@ def test_a_merge_is_made_anew_when_a_pass_has_changed_and_not_before(project, tm
         load_merged_errors(Project(out))
     merge_passes(paths, out)
     assert len(load_merged_errors(Project(out)).passes) == 2
+    file = out / "cloud/stage.json"
+    told = json.loads(file.read_text("utf-8"))
+    for damage in (lambda passes: passes.pop(), lambda passes: passes[1]["answers"].pop()):
+        spoilt = json.loads(json.dumps(told))
+        damage(spoilt["result"]["passes"])
+        file.write_text(json.dumps(spoilt), "utf-8")
+        with pytest.raises(FormatError, match="what it says of the passes"):
+            load_merged_errors(Project(out))
 
 
 def followed(project, attitude):

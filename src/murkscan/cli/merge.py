@@ -21,13 +21,13 @@ def merge(
 
     Each pass is laid on those before it where they overlap; the first stays where it is. What the
     overlap does not determine (a plain hull slides along itself) is named, and stays as logged.
-    Then mesh, measure and view work on the result.
+    Then mesh, measure, view and report work on the result.
 
     Parameters
     ----------
     passes
         Folders of scans, or clouds as .ply, .las, .laz, .e57, .xyz or .csv in metres. One alone is
-        imported.
+        imported; a folder that was merged stands for its passes.
     out
         A new folder for the merged cloud.
     reach_mm

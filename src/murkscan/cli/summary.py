@@ -19,7 +19,7 @@ _NEXT = {
     "triangulate": "murkscan motion {out} --speed-mm-s V (or --step-mm D, or --poses LOG)",
     "motion": "murkscan cloud {out}",
     "cloud": "murkscan mesh {out}",
-    "merge": "murkscan mesh {out}, then measure and view",
+    "merge": "murkscan mesh {out}, then measure, view and report",
     "mesh": "murkscan view {out}",
     "view": "murkscan report {out}",
     "report": "open the page in a browser; then `murkscan measure {out} --help`",

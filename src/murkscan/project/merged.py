@@ -1,5 +1,7 @@
 """The passes of a merged cloud: their rigs, and the errors that their points share."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ..errors import FormatError, MissingResult
@@ -53,7 +55,7 @@ def load_merged_errors(project: Project) -> MergedErrors:
         MissingResult: A stage has not been finished, or the cloud is of an earlier version.
         FormatError: A rig, the poses or the record are damaged.
     """
-    records, told = load_passes(project), project.finished(CLOUD).result.passes
+    records, told = load_passes(project), _load_told(project)
     trajectory = project.load_trajectory() if project.finished(MOTION).result.poses else None
     seen, first = list[SeenPass | None](), 0
     for record, one in zip(records, told, strict=True):
@@ -63,14 +65,24 @@ def load_merged_errors(project: Project) -> MergedErrors:
         else:
             seen.append(SeenPass(rig, own, rig_key(record)))
         first += one.pose_errors
-    errors = MergedErrors(seen, [_answer(one) for one in told])
-    for answer in errors.answers:
-        if answer is not None and answer.moves.shape != (6, len(errors.basis)):
-            raise FormatError(
-                f"{project.root / 'cloud' / 'stage.json'} is damaged: its answers are not of its "
-                "passes. Delete it and run `murkscan merge` again."
-            )
-    return errors
+    errors = MergedErrors.of_passes(seen)
+    answers = [_read_answer(project, one, len(errors.basis)) for one in told]
+    return MergedErrors(seen, answers)
+
+
+def _load_told(project: Project) -> Sequence[PassResult]:
+    """Read what became of each pass, one for each."""
+    told = project.finished(CLOUD).result.passes
+    if len(told) != len(load_passes(project)):
+        raise _damaged(project)
+    return told
+
+
+def _damaged(project: Project) -> FormatError:
+    return FormatError(
+        f"{project.root / 'cloud' / 'stage.json'} is damaged: what it says of the passes is not of "
+        "them. Delete it and run `murkscan merge` again."
+    )
 
 
 def _part_of(trajectory: Trajectory | None, one: PassResult, first: int) -> Trajectory | None:
@@ -97,11 +109,10 @@ def rig_key(record: PassRecord) -> str:
     return digest([rig, record.carries_mount])
 
 
-def _answer(told: PassResult) -> Answer | None:
+def _read_answer(project: Project, told: PassResult, count: int) -> Answer | None:
+    """Read how a pass moves with each of so many parameters; None for one that stays."""
     if told.alignment is None:
         return None
-    try:
-        moves = np.array(told.answers, float)
-    except ValueError:  # rows of several lengths
-        moves = np.zeros((0, 0))
-    return Answer(np.array(told.alignment.centre), moves)
+    if [len(row) for row in told.answers] != 6 * [count] or len(told.alignment.centre) != 3:
+        raise _damaged(project)
+    return Answer(np.array(told.alignment.centre), np.array(told.answers))
