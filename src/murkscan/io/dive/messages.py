@@ -47,8 +47,9 @@ class Message(NamedTuple):
 
 def require_extra(missing: ImportError, extra: str, what: str) -> MissingDependency:
     """Say what has to be installed for a kind of file."""
+    package = (missing.name or "more").partition(".")[0]
     return MissingDependency(
-        f"Reading {what} needs {missing.name}; install it with: pip install 'murkscan[{extra}]'"
+        f"Reading {what} needs {package}; install it with: pip install 'murkscan[{extra}]'"
     )
 
 
