@@ -291,3 +291,34 @@ def test_short_pieces_beside_a_long_stripe_are_found_however_fast_it_moves(speed
 
 def test_the_black_of_a_codec_is_not_white():
     assert learn_levels([np.full((HEIGHT, LENGTH), 16, np.uint8)] * 3).white == 255
+
+
+def test_a_stripe_that_no_scan_line_shows_is_found_by_many_together():
+    """A peak of 2.6 standard deviations of a pixel's noise scores four in a line, as noise does."""
+    peak = 2.6 * float(np.sqrt(READ + GAIN * 20.0))
+    frames = _film([20.0 + _light(_hull(0.1 * i), peak) for i in range(24)])
+    murk = Murk()
+    background = murk.learn(frames, RIG)
+    assert background.search.least < murk.min_score
+    stripes = list(murk.extract(frames, RIG, background))
+    off = np.concatenate(
+        [s.pixels[:, 1] - _hull(0.1 * i)[s.pixels[:, 0].astype(int)] for i, s in enumerate(stripes)]
+    )
+    assert np.sum(np.abs(off) < 3.0) > 0.95 * 24 * LENGTH
+    assert np.mean(np.abs(off) < 3.0) > 0.95
+    bright = _film([20.0 + _light(_hull(i), 40.0) for i in range(12)])
+    assert murk.learn(bright, RIG).search.least == murk.min_score
+
+
+def test_short_faint_remnants_in_all_of_a_recording_are_no_stripe():
+    """Twelve smears of 12 lines a frame, at places of their own, three times the noise."""
+    rng = np.random.default_rng(3)
+    light = []
+    for _ in range(16):
+        one = np.full((HEIGHT, LENGTH), 20.0)
+        for u, v in zip(
+            rng.integers(0, LENGTH - 12, 12), rng.uniform(9, HEIGHT - 9, 12), strict=True
+        ):
+            one += np.where((u <= LINES) & (u + 12 > LINES), _light(v + 0 * LINES, 3.0), 0.0)
+        light.append(one)
+    assert sum(len(stripe) for stripe in _extract(_film(light))) == 0

@@ -69,9 +69,8 @@ def _learn_levels(
 ) -> Levels:
     low, lasting = _low_levels([lines.levels for lines in group], bank.noise)
     base = replace(group[0], levels=low, signal=low)
-    frames = [
-        find_frame_ridges({0: bank.score(each)}, bank, least=LEAST / 2) for each in (base, *group)
-    ]
+    low_bank = replace(bank, search=replace(bank.search, least=LEAST / 2))
+    frames = [find_frame_ridges({0: low_bank.score(each)}, low_bank) for each in (base, *group)]
     standing = Standing.of(frames[0], frames[1:])
     is_surface = standing.are_surface(markov, lasers=lasers)
     covered = standing.cover(is_surface, low.shape)

@@ -10,7 +10,7 @@ from scipy.special import erfc
 
 from .._kernels.matched_filter import score_pixels
 from ..types.arrays import Ratios
-from ..types.background import Noise, StripeShape
+from ..types.background import PLAIN, Noise, Search, StripeShape
 from .scan_lines import ScanLines
 
 SKIRT = 2.5
@@ -32,15 +32,18 @@ class MatchedFilter:
     """Pixels that are averaged along a scan line before."""
 
     @classmethod
-    def of(cls, width: float, noise: Noise, binning: int = 1) -> "MatchedFilter":
+    def of(
+        cls, width: float, noise: Noise, binning: int = 1, *, search: Search = PLAIN
+    ) -> "MatchedFilter":
         """Make the filter of a width: a Gaussian without its part in 1, x and x², of norm 1.
 
         Args:
             width: 1σ of the stripe [px after averaging].
             noise: Of an averaged pixel.
             binning: Pixels that are averaged.
+            search: How far the filter sees.
         """
-        half = max(5, math.ceil(4 * width) + 2)
+        half = max(5, math.ceil(4 * width) + search.window)
         x = np.arange(-half, half + 1.0)
         bell = np.exp(-0.5 * (x / width) ** 2)
         smooth = np.stack([x**0, x, x**2], axis=1)
@@ -67,17 +70,24 @@ class FilterBank:
     """Of a pixel."""
     shapes: tuple[StripeShape, ...]
     """What each filter looks for."""
+    search: Search
+    """How deep in the noise."""
 
     @classmethod
-    def of(cls, shapes: Sequence[StripeShape], noise: Noise) -> "FilterBank":
+    def of(
+        cls, shapes: Sequence[StripeShape], noise: Noise, search: Search = PLAIN
+    ) -> "FilterBank":
         """Make a filter for each shape, the first one's first."""
         return cls(
             tuple(
-                MatchedFilter.of(s.width, s.clutter or noise.averaged(s.binning), s.binning)
+                MatchedFilter.of(
+                    s.width, s.clutter or noise.averaged(s.binning), s.binning, search=search
+                )
                 for s in shapes
             ),
             noise,
             tuple(shapes),
+            search,
         )
 
     def tails(self, lines: ScanLines) -> Float[np.ndarray, "shapes steps"]:

@@ -4,6 +4,7 @@ frames ─▶ scores ─▶ ridges ─▶ posteriors ─▶ centres ─▶ joine
           noise     ±1 frame  lines, ±4     fit        ±2 frames
 """
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -12,7 +13,8 @@ from typing import ClassVar, TypeVar, final
 import numpy as np
 
 from ..errors import InputError
-from ..types.background import Background, Noise, StripeShape
+from ..types.arrays import Scalars
+from ..types.background import Background, Noise, Search
 from ..types.frame import Frame
 from ..types.rig import Rig
 from ..types.stripe import Stripe
@@ -35,6 +37,21 @@ from .scan_lines import ScanLines
 from .sheets import OtherLasers, expected_slope
 from .stripe_shape import learn_stripe_shapes
 
+_FAINT, _MORE = 15.0, 1.7
+"""Median score of the stripe below which a deeper look is tried, and how many times as much it must
+find to be taken; where it finds so much less, what was found before was noise. At c = 6 and 7 /m it
+finds twice as much, from 1.0 to 1.5 times in clearer water, in texture and in encoded video, where
+it is not worth its time (benchmarks/murk.py, seed 0)."""
+_ROUNDED = 0.5
+"""Standard deviation of a pixel's noise below which rounding draws lines itself [grey levels]."""
+_LOW, _FEW_LONG = 8.0, 0.1
+"""Median score, and share of what goes on over many scan lines, below which a recording shows no
+stripe: a surface that is as faint as that is found in long lines only, remnants of dirt in short
+ones. Small pieces of a surface are seen in clear water only, where they are bright."""
+_SOME = 0.01
+"""Share of the scan lines that shows as much by chance."""
+_DEEP, _WIDER = 0.6, 3
+"""Factor of the least score in a deeper look, and how much farther its filters see [px]."""
 _FEW = 16
 """Frames that suffice to learn shapes and rates; what is fixed to the picture needs more."""
 
@@ -81,15 +98,33 @@ class Murk(AbstractExtractor):
         rim = add_rim(frames, levels, ())
         see = partial(ScanLines.of, axis=axis, noise=levels, slope=slope)
         look = [see(frame, fixed=rim) for frame in frames]
-        learn = partial(learn_stripe_shapes, noise=levels, markov=markov, min_score=self.min_score)
-        shapes = learn(_thin(look))
-        bank, lasers = FilterBank.of(shapes, levels), len(rig.lasers)
+        search = Search(least=self.min_score)
+        learn = partial(learn_stripe_shapes, noise=levels, markov=markov)
+        shapes = learn(_thin(look), search=search)
+        bank, lasers = FilterBank.of(shapes, levels, search), len(rig.lasers)
         stays = learn_fixed_patterns(look, bank, markov, lasers=lasers)
         fixed = add_rim(frames, levels, stays)
         look = [see(frame, fixed=fixed) for frame in _thin(frames)]
-        shapes = learn(look) if any(one.levels.any() for one in fixed) else shapes
-        rates = self._learn_rates(look, shapes, levels, rig)
-        background = Background(learn_noise(frames).noise, levels, shapes, rates=rates, fixed=fixed)
+        if any(one.levels.any() for one in fixed):
+            shapes = learn(look, search=search)
+        learnt = self._learn_rates(look, FilterBank.of(shapes, levels, search), rig)
+        if not learnt.height >= _FAINT and levels.typical(frames[0].image) > _ROUNDED:
+            deep = _deepen(search)
+            deep_shapes = learn(look, search=deep)
+            deep_learnt = self._learn_rates(look, FilterBank.of(deep_shapes, levels, deep), rig)
+            few = _SOME * sum(lines.num_lines for lines in look)
+            if not 1 / _MORE < (deep_learnt.count + few) / (learnt.count + few) < _MORE:
+                search, shapes, learnt = deep, deep_shapes, deep_learnt
+        if learnt.height < _LOW and learnt.long < _FEW_LONG * learnt.count:
+            learnt = replace(learnt, rates=np.full_like(learnt.rates, np.inf))
+        background = Background(
+            learn_noise(frames).noise,
+            levels,
+            shapes,
+            rates=learnt.rates,
+            search=search,
+            fixed=fixed,
+        )
         alone = (self.extract([frame], rig, background, laser=laser) for frame in frames)
         stripes = [next(found) for found in alone]
         near, clear = nearer_side(rig, laser=laser), clearance(shapes[0], frames[0])
@@ -123,25 +158,17 @@ class Murk(AbstractExtractor):
         self, look: Iterable[ScanLines], noise: Noise, background: Background, others: OtherLasers
     ) -> Iterator[Centres]:
         markov, shapes = self._markov(background.rates), background.shapes
-        bank = FilterBank.of(shapes, noise)
+        bank = FilterBank.of(shapes, noise, background.search)
         scored = (bank.score(lines) for lines in look)
-        ridges = (
-            find_frame_ridges(near, bank, least=self.min_score)
-            for near in with_neighbours(scored, 1)
-        )
+        ridges = (find_frame_ridges(near, bank) for near in with_neighbours(scored, 1))
         for near in with_neighbours(ridges, 4):
             own = others.tell(near[0])
             posterior = own * markov.follow(near[0], ask_frames(near, markov) + np.log(own))
             yield find_centres(near[0], posterior, noise=noise, shapes=shapes)
 
-    def _learn_rates(
-        self, look: Sequence[ScanLines], shapes: tuple[StripeShape, ...], noise: Noise, rig: Rig
-    ) -> Rates:
+    def _learn_rates(self, look: Sequence[ScanLines], bank: FilterBank, rig: Rig) -> "_Learnt":
         """Count the clutter of each height, twice: what is a stripe, of any laser, hangs on it."""
-        bank = FilterBank.of(shapes, noise)
-        ridges = [
-            find_frame_ridges({0: bank.score(lines)}, bank, least=self.min_score) for lines in look
-        ]
+        ridges = [find_frame_ridges({0: bank.score(lines)}, bank) for lines in look]
         lasers = [OtherLasers.of(rig, number) for number in range(len(rig.lasers))]
         rates = usual_rates()
         for _ in range(2):
@@ -150,10 +177,46 @@ class Murk(AbstractExtractor):
                 [markov.follow(one, np.log(laser.tell(one))) for laser in lasers] for one in ridges
             ]
             rates = learn_rates(ridges, stripes)
-        return rates
+        heights = [
+            one.heights[posterior > 0.5]
+            for one, each in zip(ridges, stripes, strict=True)
+            for posterior in each
+        ]
+        long = sum(
+            int(one.are_in_lines(posterior > 0.5).sum())
+            for one, each in zip(ridges, stripes, strict=True)
+            for posterior in each
+        )
+        return _Learnt(rates, np.concatenate(heights), long)
 
     def _markov(self, rates: Rates) -> Markov:
         return Markov(rates, self.birth, self.death)
+
+
+@dataclass(frozen=True, eq=False)
+class _Learnt:
+    """What single frames show at one depth of search."""
+
+    rates: Rates
+    heights: Scalars
+    """Scores of what is the stripe."""
+    long: int
+    """Scan lines of those that go on over many lines."""
+
+    @property
+    def count(self) -> int:
+        """Count the scan lines that show a stripe."""
+        return len(self.heights)
+
+    @property
+    def height(self) -> float:
+        """Give the stripe's median score; NaN where there is none."""
+        return float(np.median(self.heights)) if len(self.heights) else math.nan
+
+
+def _deepen(search: Search) -> Search:
+    """Look deeper: what no scan line shows by itself, many together may."""
+    return Search(_DEEP * search.least, 2 * search.most, search.window + _WIDER)
 
 
 def _thin(items: Sequence[Item]) -> Sequence[Item]:

@@ -23,8 +23,6 @@ from .matched_filter import FilterBank, Scored
 from .plateaus import list_plateaus
 from .scan_lines import ScanLines
 
-MOST = 16
-"""Ridges a scan line; the highest are kept. With six, text and bubbles crowd the stripe out."""
 _NARROW = 0.3
 """Share of a wider filter's answer from which the narrower one tells where the stripe is. A stripe
 answers a filter of half its width with 0.27 of what its own gives and less; the skirt of a narrow
@@ -45,8 +43,9 @@ be: where a stripe is rolled by 45° it is 1.2 times as high. At c = 1.5 /m, 1.4
 the true centres more, and 1.0 gives one in 550 more that are false (benchmarks/murk.py, seed 0)."""
 _SURE = 8.0
 """Score from which a ridge is surely there, whatever it is."""
-_LONG, _STEADY = 24, 3.0
-"""Lines, and the step that parts them [px], from which ridges are no snow."""
+_LONG, _STEADY, _MISSING = 24, 3.0, 4
+"""Lines, and the step that parts them [px], from which ridges are no snow; and the lines that a
+faint stripe may lack at once."""
 _MUCH = 0.1
 """Share of the scan lines that long stripes must cover to tell anything."""
 
@@ -86,7 +85,7 @@ class Ridges:
     @property
     def exist(self) -> Marks:
         """Tell which entries are ridges."""
-        return np.arange(MOST) < self.counts[:, None]
+        return np.arange(self.positions.shape[1]) < self.counts[:, None]
 
     @property
     def straight(self) -> Float[np.ndarray, "lines most"]:
@@ -120,6 +119,11 @@ class Ridges:
         marks = np.zeros(which.shape, bool)
         marks[every, best] = find_runs(which[every, best], self.straight[every, best])
         return marks
+
+    def are_in_lines(self, which: Marks) -> Marks:
+        """Tell which of some follow one another over many lines, a few of which may lack them."""
+        own, ones = (self.straight, self.counts, which), np.ones(which.shape)
+        return which & (pool_along(*own, ones, 2 * _LONG, 1.0, _MISSING) >= _LONG + _MISSING)
 
     def go_on(self, which: Marks) -> tuple[Marks, Float[np.ndarray, "lines most"]]:
         """Tell which of some have another within a grain in the next line, and how many would.
@@ -162,7 +166,7 @@ def find_runs(on: Mask, positions: Scalars, *, least: float = _LONG) -> Mask:
     return on & np.repeat(np.diff(ends) >= least, np.diff(ends))
 
 
-def find_frame_ridges(near: Mapping[int, Scored], bank: FilterBank, *, least: float) -> Ridges:
+def find_frame_ridges(near: Mapping[int, Scored], bank: FilterBank) -> Ridges:
     """Find the ridges of a frame, helped by those before and after it.
 
     A stripe that moves by less than its width from frame to frame adds up to a higher score; what
@@ -171,8 +175,7 @@ def find_frame_ridges(near: Mapping[int, Scored], bank: FilterBank, *, least: fl
 
     Args:
         near: The frame, 0, and those one before and after it, as far as there are any.
-        bank: The filters.
-        least: Score that a ridge must reach.
+        bank: The filters, and how deep is looked.
 
     References:
         Curless and Levoy, Better optical triangulation through spacetime analysis, ICCV 1995, for
@@ -180,7 +183,7 @@ def find_frame_ridges(near: Mapping[int, Scored], bank: FilterBank, *, least: fl
         automatic scale selection, IJCV 30(2), 1998, for ridges of several widths.
     """
     own = near[0]
-    parts = [_find_one_width(near, bank, number, least) for number in range(len(bank.filters))]
+    parts = [_find_one_width(near, bank, number) for number in range(len(bank.filters))]
     if len(parts) == 1:
         positions, heights, counts = parts[0]
         shapes = np.zeros(positions.shape, np.int8)
@@ -217,7 +220,7 @@ def _add_plateaus(
 
 
 def _find_one_width(
-    near: Mapping[int, Scored], bank: FilterBank, number: int, least: float
+    near: Mapping[int, Scored], bank: FilterBank, number: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Find what answers one filter: positions [px of the frame's image], heights and counts."""
     matched = bank.filters[number]
@@ -230,8 +233,9 @@ def _find_one_width(
             add_neighbour(scores, other.scores[number], down, across, _BOUND, _HALF_ROW, total)
         total *= np.float32(1 / math.sqrt(len(near)))
         scores = np.maximum(total, scores)
+    least, most = bank.search.least, bank.search.most
     margin = min(_RIM * matched.width, (len(scores) - 3) / 2)
-    positions, heights, counts = find_ridges(scores, least, MOST, matched.reach, _LOBE, margin)
+    positions, heights, counts = find_ridges(scores, least, most, matched.reach, _LOBE, margin)
     return matched.binning * positions + 0.5 * (matched.binning - 1), heights, counts
 
 

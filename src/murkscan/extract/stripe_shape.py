@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float, Shaped
 
 from ..types.arrays import Indices, Scalars
-from ..types.background import Noise, StripeShape
+from ..types.background import Noise, Search, StripeShape
 from .centres import Tightness, fit_ridges
 from .clutter import learn_response_law
 from .markov import Markov
@@ -50,7 +50,7 @@ _ENOUGH = 100
 
 
 def learn_stripe_shapes(
-    look: Sequence[ScanLines], noise: Noise, *, markov: Markov, min_score: float
+    look: Sequence[ScanLines], noise: Noise, *, markov: Markov, search: Search
 ) -> tuple[StripeShape, ...]:
     """Learn the core's widths, the skirt, and how much more than noise the centres scatter.
 
@@ -58,13 +58,13 @@ def learn_stripe_shapes(
         look: Frames spread over the recording, along their scan lines.
         noise: Of a pixel.
         markov: The chain that tells the stripe from the rest.
-        min_score: Score from which a ridge is looked at.
+        search: How deep ridges are looked for.
 
     Returns:
         One shape for each width that the recording has, an octave apart, the commonest first; a
         narrow one where the frames show no stripe.
     """
-    learner = _Learner(look, noise, markov, min_score)
+    learner = _Learner(look, noise, markov, search)
     width = learner.measure_width()
     shape = learner.learn((_begin(width),))[0]
     # In faint stripes noise widens what is half as high: the fit knows better.
@@ -97,7 +97,7 @@ class _Learner:
     look: Sequence[ScanLines]
     noise: Noise
     markov: Markov
-    min_score: float
+    search: Search
 
     def measure_width(self) -> float:
         """Measure the width at half height, under the least averaging that shows much stripe [px].
@@ -109,7 +109,7 @@ class _Learner:
         length = len(self.look[0].levels)
         binnings = [binning for binning in _BINNINGS if 3 * binning <= length] or [1]
         for binning in binnings:
-            bank = FilterBank.of((_begin_at(_FIRST_WIDTH, binning),), self.noise)
+            bank = self._bank((_begin_at(_FIRST_WIDTH, binning),))
             count, measured = 0, [np.zeros(0)]
             for lines in few:
                 ridges = self._ridges(lines, bank)
@@ -130,7 +130,7 @@ class _Learner:
         octaves = [first * 2.0**k for k in range(1, 6)]
         widths = [w for w in octaves if w <= min(_WIDEST_BAND, length / 12)]
         shapes = (shape, *(_begin(width) for width in widths))
-        bank = FilterBank.of(shapes, self.noise)
+        bank = self._bank(shapes)
         heights: list[list[Scalars]] = [[np.zeros(0)] for _ in shapes]
         for lines in self.look[:: max(len(self.look) // 8, 1)]:
             ridges = self._ridges(lines, bank)
@@ -175,12 +175,12 @@ class _Learner:
     def _with_clutter(self, shape: StripeShape) -> StripeShape:
         """Learn how strongly a filter of this width answers what is no stripe."""
         noise = self.noise.averaged(shape.binning)
-        matched = MatchedFilter.of(shape.width, noise, shape.binning)
+        matched = MatchedFilter.of(shape.width, noise, shape.binning, search=self.search)
         return replace(shape, clutter=learn_response_law(self.look, matched))
 
     def _fit_all(self, shapes: tuple[StripeShape, ...], tightness: Tightness) -> list["_Fits"]:
         """Fit the sure ridges of all frames; those of each shape by themselves."""
-        bank = FilterBank.of(shapes, self.noise)
+        bank = self._bank(shapes)
         parts: list[list[_Fits]] = [[] for _ in shapes]
         for each in self.look:
             ridges = self._ridges(each, bank)
@@ -199,8 +199,11 @@ class _Learner:
         found = fit_ridges(seen, lines, start, noise=noise, shape=shape, tightness=held)
         return _Fits.of(lines, found, ridges.heights[lines, which])
 
+    def _bank(self, shapes: tuple[StripeShape, ...]) -> FilterBank:
+        return FilterBank.of(shapes, self.noise, self.search)
+
     def _ridges(self, lines: ScanLines, bank: FilterBank) -> Ridges:
-        return find_frame_ridges({0: bank.score(lines)}, bank, least=self.min_score)
+        return find_frame_ridges({0: bank.score(lines)}, bank)
 
     def _sure(self, ridges: Ridges, least: float) -> tuple[Indices, Indices]:
         """Give the scan lines and the numbers of ridges that are surely the stripe."""

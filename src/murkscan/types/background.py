@@ -45,6 +45,10 @@ class Noise:
         """Compute the variance of a pixel at each level [grey levels²]."""
         return np.maximum(self.fixed + level * (self.gain + level * self.relative), self.least)
 
+    def typical(self, image: np.ndarray) -> float:
+        """Compute the standard deviation of the noise at a picture's median level [grey levels]."""
+        return float(np.sqrt(self.variance(np.array([np.median(image)]))[0]))
+
     def as_law(self) -> Scalars:
         """List what a compiled loop needs: fixed, gain, relative, least, white."""
         return np.array([self.fixed, self.gain, self.relative, self.least, self.white])
@@ -70,6 +74,24 @@ class StripeShape:
     clutter: Noise | None = None
     """Variance of a matched filter's answer where there is no stripe, by the level around it: noise
     and all that a picture has of this width beside; that of the noise alone unless given."""
+
+
+@dataclass(frozen=True)
+class Search:
+    """How deep in the noise ridges are looked for."""
+
+    least: float = 2.5
+    """Score from which a ridge is looked at [standard deviations]."""
+    most: int = 16
+    """Ridges a scan line; the highest are kept. With six, text and bubbles crowd the stripe out."""
+    window: int = 2
+    """Pixels that a filter sees on both sides beyond four widths of the stripe: the more, the less
+    of a faint stripe is lost to the bend that filters are blind to, and the more glow and texture
+    are taken for one."""
+
+
+PLAIN = Search()
+"""As deep as single scan lines show a stripe."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -118,6 +140,8 @@ class Background(ShortRepr):
     """The stripe's looks, the commonest first; of extractors that expect some."""
     rates: Scalars = field(default_factory=lambda: np.zeros(0))
     """How often clutter of each height is met; of extractors that weigh by it."""
+    search: Search = PLAIN
+    """How deep is looked; of extractors that look deeper where the stripe is faint."""
     fixed: tuple[FixedPattern, ...] = ()
     """What stays in the picture whatever the scene; one for each kind of field."""
     attenuation: Attenuation | None = None
