@@ -48,8 +48,8 @@ _LOW, _FEW_LONG = 8.0, 0.1
 """Median score, and share of what goes on over many scan lines, below which a recording shows no
 stripe: a surface that is as faint as that is found in long lines only, remnants of dirt in short
 ones. Small pieces of a surface are seen in clear water only, where they are bright."""
-_SOME = 0.01
-"""Share of the scan lines that shows as much by chance."""
+_SOME = 0.07
+"""Share of the scan lines that a deep look finds by chance, in what is left of rows' own noise."""
 _DEEP, _WIDER = 0.6, 3
 """Factor of the least score in a deeper look, and how much farther its filters see [px]."""
 _FEW = 16
@@ -113,7 +113,8 @@ class Murk(AbstractExtractor):
             deep_shapes = learn(look, search=deep)
             deep_learnt = self._learn_rates(look, FilterBank.of(deep_shapes, levels, deep), rig)
             few = _SOME * sum(lines.num_lines for lines in look)
-            if not 1 / _MORE < (deep_learnt.count + few) / (learnt.count + few) < _MORE:
+            more = deep_learnt.count > _MORE * max(learnt.count, few)
+            if more or _MORE * deep_learnt.count < learnt.count:
                 search, shapes, learnt = deep, deep_shapes, deep_learnt
         if learnt.height < _LOW and learnt.long < _FEW_LONG * learnt.count:
             learnt = replace(learnt, rates=np.full_like(learnt.rates, np.inf))
