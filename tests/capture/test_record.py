@@ -160,7 +160,7 @@ def test_ctrl_c_ends_the_command_with_a_file_that_plays(tmp_path, sending, lengt
     process.send_signal(signal.SIGINT)
     said, complained = process.communicate(timeout=20)
     assert process.returncode == 0
-    assert len(said.splitlines()) == 1
+    assert [line.split()[0] for line in said.splitlines()] == ["made", "next"]
     assert "murkscan:" not in complained
     frames = list(open_recording(out).frames())
     assert len(frames) > 10

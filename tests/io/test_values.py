@@ -9,7 +9,14 @@ from jaxtyping import Float32
 
 from murkscan.errors import FormatError
 from murkscan.io.values import as_plain, from_plain, load_value, save_value
-from murkscan.types.background import Attenuation, Background, FixedPattern, Noise, StripeShape
+from murkscan.types.background import (
+    Attenuation,
+    Background,
+    FixedPattern,
+    Noise,
+    Search,
+    StripeShape,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +60,8 @@ def test_what_an_extractor_has_learnt_comes_back(tmp_path):
     pattern = FixedPattern(1, np.eye(3, dtype=np.float32), np.eye(3) > 0)
     water = Attenuation(1.0, 0.5, 2.0)
     rates = np.linspace(0.1, 0.01, 5)
-    learnt = Background(1.5, noise, (shape, shape), rates, (pattern,), water, ("odd",))
+    deep = Search(1.5, 32, 5)
+    learnt = Background(1.5, noise, (shape, shape), rates, deep, (pattern,), water, ("odd",))
     save_value(tmp_path / "a.json", learnt)
     back = load_value(tmp_path / "a.json", Background)
     np.testing.assert_array_equal(back.rates, learnt.rates)
@@ -61,7 +69,7 @@ def test_what_an_extractor_has_learnt_comes_back(tmp_path):
     np.testing.assert_array_equal(same.levels, pattern.levels)
     np.testing.assert_array_equal(same.overlay, pattern.overlay)
     assert same.first_row == pattern.first_row
-    for name in ("noise", "levels", "shapes", "attenuation", "remarks"):
+    for name in ("noise", "levels", "shapes", "search", "attenuation", "remarks"):
         assert getattr(back, name) == getattr(learnt, name)
 
 

@@ -5,7 +5,7 @@ frames ─▶ scores ─▶ ridges ─▶ posteriors ─▶ centres ─▶ joine
 """
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import ClassVar, TypeVar, final
@@ -14,7 +14,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..types.arrays import Scalars
-from ..types.background import Background, Noise, Search
+from ..types.background import Background, FixedPattern, Noise, Search, StripeShape
 from ..types.frame import Frame
 from ..types.rig import Rig
 from ..types.stripe import Stripe
@@ -90,45 +90,27 @@ class Murk(AbstractExtractor):
 
     def learn(self, frames: Sequence[Frame], rig: Rig, *, laser: int = 0) -> Background:
         """Learn the noise of each grey level, the stripe's shape, and how murky the water is."""
-        axis, slope = rig.laser(laser).axis, expected_slope(rig, laser)
+        axis = rig.laser(laser).axis
         levels = learn_levels([f.image if axis == "y" else f.image.T for f in frames])
         if axis == "y":
             levels = replace(levels, rows=learn_row_noise([f.image for f in frames], levels))
-        markov = self._markov(usual_rates())
-        rim = add_rim(frames, levels, ())
-        see = partial(ScanLines.of, axis=axis, noise=levels, slope=slope)
-        look = [see(frame, fixed=rim) for frame in frames]
-        search = Search(least=self.min_score)
-        learn = partial(learn_stripe_shapes, noise=levels, markov=markov)
-        shapes = learn(_thin(look), search=search)
-        bank, lasers = FilterBank.of(shapes, levels, search), len(rig.lasers)
-        stays = learn_fixed_patterns(look, bank, markov, lasers=lasers)
-        fixed = add_rim(frames, levels, stays)
+        see = partial(ScanLines.of, axis=axis, noise=levels, slope=expected_slope(rig, laser))
+        fixed, shapes = self._learn_fixed(frames, see, levels, lasers=len(rig.lasers))
         look = [see(frame, fixed=fixed) for frame in _thin(frames)]
         if any(one.levels.any() for one in fixed):
-            shapes = learn(look, search=search)
-        learnt = self._learn_rates(look, FilterBank.of(shapes, levels, search), rig)
-        if not learnt.height >= _FAINT and levels.typical(frames[0].image) > _ROUNDED:
-            deep = _deepen(search)
-            deep_shapes = learn(look, search=deep)
-            deep_learnt = self._learn_rates(look, FilterBank.of(deep_shapes, levels, deep), rig)
-            few = _SOME * sum(lines.num_lines for lines in look)
-            more = deep_learnt.count > _MORE * max(learnt.count, few)
-            if more or _MORE * deep_learnt.count < learnt.count:
-                search, shapes, learnt = deep, deep_shapes, deep_learnt
-        if learnt.height < _LOW and learnt.long < _FEW_LONG * learnt.count:
-            learnt = replace(learnt, rates=np.full_like(learnt.rates, np.inf))
+            shapes = self._learn_shapes(look, levels, self._plain)
+        learnt = self._learn_depth(look, FilterBank.of(shapes, levels, self._plain), rig)
         background = Background(
             learn_noise(frames).noise,
             levels,
-            shapes,
+            learnt.bank.shapes,
             rates=learnt.rates,
-            search=search,
+            search=learnt.bank.search,
             fixed=fixed,
         )
         alone = (self.extract([frame], rig, background, laser=laser) for frame in frames)
         stripes = [next(found) for found in alone]
-        near, clear = nearer_side(rig, laser=laser), clearance(shapes[0], frames[0])
+        near, clear = nearer_side(rig, laser=laser), clearance(background.shapes[0], frames[0])
         remarks = find_remarks(frames, stripes, axis, levels, near=near, clear=clear)
         background = replace(background, remarks=remarks)
         if rig.water is None:
@@ -167,6 +149,43 @@ class Murk(AbstractExtractor):
             posterior = own * markov.follow(near[0], ask_frames(near, markov) + np.log(own))
             yield find_centres(near[0], posterior, noise=noise, shapes=shapes)
 
+    @property
+    def _plain(self) -> Search:
+        return Search(least=self.min_score)
+
+    def _learn_shapes(
+        self, look: Sequence[ScanLines], noise: Noise, search: Search
+    ) -> tuple[StripeShape, ...]:
+        markov = self._markov(usual_rates())
+        return learn_stripe_shapes(look, noise, markov=markov, search=search)
+
+    def _learn_fixed(
+        self, frames: Sequence[Frame], see: Callable[..., ScanLines], noise: Noise, *, lasers: int
+    ) -> tuple[tuple[FixedPattern, ...], tuple[StripeShape, ...]]:
+        """Learn what is fixed to the picture, and the stripe's looks before it is taken away."""
+        rim = add_rim(frames, noise, ())
+        look = [see(frame, fixed=rim) for frame in frames]
+        shapes = self._learn_shapes(_thin(look), noise, self._plain)
+        bank, markov = FilterBank.of(shapes, noise, self._plain), self._markov(usual_rates())
+        stays = learn_fixed_patterns(look, bank, markov, lasers=lasers)
+        return add_rim(frames, noise, stays), shapes
+
+    def _learn_depth(self, look: Sequence[ScanLines], bank: FilterBank, rig: Rig) -> "_Learnt":
+        """Learn how often clutter is met, after a deeper look where that finds much more."""
+        learnt = self._learn_rates(look, bank, rig)
+        faint = not learnt.height >= _FAINT
+        if faint and bank.noise.typical(look[0].levels) > _ROUNDED:
+            search = _deepen(bank.search)
+            shapes = self._learn_shapes(look, bank.noise, search)
+            deep = self._learn_rates(look, FilterBank.of(shapes, bank.noise, search), rig)
+            few = _SOME * sum(lines.num_lines for lines in look)
+            more = deep.count > _MORE * max(learnt.count, few)
+            if more or _MORE * deep.count < learnt.count:
+                learnt = deep
+        if learnt.height < _LOW and learnt.long < _FEW_LONG * learnt.count:
+            return replace(learnt, rates=np.full_like(learnt.rates, np.inf))
+        return learnt
+
     def _learn_rates(self, look: Sequence[ScanLines], bank: FilterBank, rig: Rig) -> "_Learnt":
         """Count the clutter of each height, twice: what is a stripe, of any laser, hangs on it."""
         ridges = [find_frame_ridges({0: bank.score(lines)}, bank) for lines in look]
@@ -188,7 +207,7 @@ class Murk(AbstractExtractor):
             for one, each in zip(ridges, stripes, strict=True)
             for posterior in each
         )
-        return _Learnt(rates, np.concatenate(heights), long)
+        return _Learnt(bank, rates, np.concatenate(heights), long)
 
     def _markov(self, rates: Rates) -> Markov:
         return Markov(rates, self.birth, self.death)
@@ -198,6 +217,7 @@ class Murk(AbstractExtractor):
 class _Learnt:
     """What single frames show at one depth of search."""
 
+    bank: FilterBank
     rates: Rates
     heights: Scalars
     """Scores of what is the stripe."""

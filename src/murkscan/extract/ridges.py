@@ -8,11 +8,11 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Bool, Float, Int8
 
+from .._kernels.blurred_ends import find_blurred_ends
 from .._kernels.matched_filter import add_neighbour
 from .._kernels.ridges import (
     compare_ridges,
     drop_hidden,
-    find_blurred_ends,
     find_ridges,
     merge_ridges,
     pool_along,

@@ -97,10 +97,8 @@ class Trajectory(ShortRepr):
         """
         if len(times) == 0:
             return points
-        moments, which = np.unique(times, return_inverse=True)
-        poses = self.at(moments)
-        rotations = Rotation.from_quat(poses.quaternions, scalar_first=True).as_matrix()
-        return np.einsum("nij,nj->ni", rotations[which], points) + poses.positions[which]
+        rotations, positions = self._poses_of(times)
+        return np.einsum("nij,nj->ni", rotations, points) + positions
 
     def to_camera(self, points: Points, times: Scalars) -> Points:
         """Carry points of the world [m] to the camera; the inverse of `transform`.
@@ -110,10 +108,15 @@ class Trajectory(ShortRepr):
         """
         if len(times) == 0:
             return points
+        rotations, positions = self._poses_of(times)
+        return np.einsum("nji,nj->ni", rotations, points - positions)
+
+    def _poses_of(self, times: Scalars) -> tuple[Float[np.ndarray, "n 3 3"], Points]:
+        """Give the rotation and the position at each time; points of a profile share theirs."""
         moments, which = np.unique(times, return_inverse=True)
         poses = self.at(moments)
         rotations = Rotation.from_quat(poses.quaternions, scalar_first=True).as_matrix()
-        return np.einsum("nji,nj->ni", rotations[which], points - poses.positions[which])
+        return rotations[which], poses.positions[which]
 
     def line_of_sight(self) -> Vector:
         """Compute the mean direction in which the camera looked, in the world; unit length."""
