@@ -90,8 +90,13 @@ class Ridges:
     @property
     def straight(self) -> Float[np.ndarray, "lines most"]:
         """Positions from those of an even wall: what follows a surface steps little."""
-        wall = self.lines.even_wall(np.arange(len(self.counts), dtype=float))
-        return self.positions - wall[:, None] * self.lines.binning / self.lines.stretch
+        return self.positions - self._slope * np.arange(len(self.counts))[:, None]
+
+    @property
+    def _slope(self) -> float:
+        """Pixels of the frame's image from one scan line to the next of an even wall's stripe."""
+        lines = self.lines
+        return lines.slope * lines.line_step * lines.binning / lines.stretch
 
     def are_also_in(self, other: "Ridges", *, near: float, share: float = 0.33) -> Marks:
         """Tell which are in another frame, too, within `near` pixels and at a `share` of height."""
@@ -103,8 +108,7 @@ class Ridges:
     def are_blurred_ends(self) -> Marks:
         """Tell which are a stripe's blur, beyond the edge where the stripe ends."""
         own = self.positions, self.heights, self.counts, self.shapes
-        slope = self.lines.slope * self.lines.line_step * self.lines.binning / self.lines.stretch
-        return find_blurred_ends(*own, self.tails, slope, _FAINT, _MARGIN)
+        return find_blurred_ends(*own, self.tails, self._slope, _FAINT, _MARGIN)
 
     def are_within(self, which: Marks, distance: float) -> Marks:
         """Tell which lie within a distance of one of some in their scan line [px of `lines`]."""
@@ -122,8 +126,14 @@ class Ridges:
 
     def are_in_lines(self, which: Marks) -> Marks:
         """Tell which of some follow one another over many lines, a few of which may lack them."""
-        own, ones = (self.straight, self.counts, which), np.ones(which.shape)
-        return which & (pool_along(*own, ones, 2 * _LONG, 1.0, _MISSING) >= _LONG + _MISSING)
+        return which & (self._count_along(which, 2 * _LONG, 1.0, _MISSING) >= _LONG + _MISSING)
+
+    def _count_along(
+        self, which: Marks, reach: int, steep: float, gap: int
+    ) -> Float[np.ndarray, "lines most"]:
+        """Count those of some that follow one another from each of them; see `pool_along`."""
+        ones = np.ones(which.shape)
+        return pool_along(self.straight, self.counts, which, ones, reach, steep, gap)
 
     def go_on(self, which: Marks) -> tuple[Marks, Float[np.ndarray, "lines most"]]:
         """Tell which of some have another within a grain in the next line, and how many would.
@@ -149,8 +159,7 @@ class Ridges:
     def are_sure_and_long(self) -> Marks:
         """Tell which are sure and part of a line that follows itself over many scan lines."""
         sure = self.exist & (self.heights > _SURE)
-        own, ones = (self.straight, self.counts, sure), np.ones(sure.shape)
-        return sure & (pool_along(*own, ones, int(_LONG), _STEADY - 1.0, 0) >= _LONG)
+        return sure & (self._count_along(sure, _LONG, _STEADY - 1.0, 0) >= _LONG)
 
 
 def find_runs(on: Mask, positions: Scalars, *, least: float = _LONG) -> Mask:

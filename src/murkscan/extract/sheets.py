@@ -56,7 +56,6 @@ class OtherLasers:
     where ridges of a scan line are as far apart as the sheets have it, each is known.
     """
 
-    axis: str
     own: tuple[Table, ...]
     """Position of the own stripe where the surface is that another's shows, by pixel."""
     others: tuple[Table, ...]
@@ -65,11 +64,13 @@ class OtherLasers:
     @classmethod
     def of(cls, rig: Rig, laser: int) -> "OtherLasers":
         """Compare a laser's sheet with those of all others."""
+        if len(rig.lasers) == 1:
+            return cls((), ())
         depths = [_depths(rig, number) for number in range(len(rig.lasers))]
         rest = [depth for number, depth in enumerate(depths) if number != laser]
         own = tuple(_look_up(depth, depths[laser]) for depth in rest)
         others = tuple(_look_up(depths[laser], depth) for depth in rest)
-        return cls(rig.laser(laser).axis, own, others)
+        return cls(own, others)
 
     def tell(self, ridges: Ridges) -> Probability:
         """Tell of each ridge how probably it is this laser's, if it is one's at all."""
