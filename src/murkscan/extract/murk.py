@@ -108,8 +108,8 @@ class Murk(AbstractExtractor):
             search=learnt.bank.search,
             fixed=fixed,
         )
-        alone = (self.extract([frame], rig, background, laser=laser) for frame in frames)
-        stripes = [next(found) for found in alone]
+        others, seen = OtherLasers.of(rig, laser), (see(frame, fixed=fixed) for frame in frames)
+        stripes = [next(self._find([lines], background, others, laser)) for lines in seen]
         near, clear = nearer_side(rig, laser=laser), clearance(background.shapes[0], frames[0])
         remarks = find_remarks(frames, stripes, axis, levels, near=near, clear=clear)
         background = replace(background, remarks=remarks)
@@ -131,16 +131,22 @@ class Murk(AbstractExtractor):
             fixed=background.fixed,
             slope=expected_slope(rig, laser),
         )
-        others = OtherLasers.of(rig, laser)
-        centres = self._centres(map(look, frames), background.levels, background, others)
+        yield from self._find(map(look, frames), background, OtherLasers.of(rig, laser), laser)
+
+    def _find(
+        self, look: Iterable[ScanLines], background: Background, others: OtherLasers, laser: int
+    ) -> Iterator[Stripe]:
+        centres = self._centres(look, background, others)
         for near in with_neighbours(centres, 2):
             joined = doubt_wide(join_frames(near))
             yield _as_stripe(joined[joined.posterior >= self.min_posterior], laser)
 
     def _centres(
-        self, look: Iterable[ScanLines], noise: Noise, background: Background, others: OtherLasers
+        self, look: Iterable[ScanLines], background: Background, others: OtherLasers
     ) -> Iterator[Centres]:
-        markov, shapes = self._markov(background.rates), background.shapes
+        noise, shapes = background.levels, background.shapes
+        assert noise is not None  # checked by `extract`
+        markov = self._markov(background.rates)
         bank = FilterBank.of(shapes, noise, background.search)
         scored = (bank.score(lines) for lines in look)
         ridges = (find_frame_ridges(near, bank) for near in with_neighbours(scored, 1))
