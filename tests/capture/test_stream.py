@@ -43,14 +43,19 @@ def record(source, out, seconds):
     return last
 
 
-def check(out, last, seconds):
+LENGTH = 1.18
+"""Half way between the thirtieth picture and the next [s]: a receiver works an RTP stream's times
+out of the sender's reports, to a millisecond or so."""
+
+
+def check(out, last, pictures):
     """Pictures of the sender: a line that moves 1 px a picture, 25 a second, without a gap."""
     skips = []
     frames = list(open_recording(out).frames(on_skip=skips.append))
     assert skips == []
-    assert len(frames) == last.frames == round(25 * seconds)
+    assert len(frames) == last.frames == pictures
     assert frames[0].time == 0
-    np.testing.assert_allclose(np.diff([frame.time for frame in frames]), 0.04, atol=1e-9)
+    np.testing.assert_allclose(np.diff([frame.time for frame in frames]), 0.04, atol=2e-3)
     where = [int(frame.image[100].argmax()) for frame in frames]
     # Compression may make either of the line's four columns the brightest.
     np.testing.assert_allclose(np.diff(where), 1, atol=4)
@@ -61,7 +66,7 @@ def check(out, last, seconds):
 def test_mpeg_ts_over_udp_is_copied_with_its_times(tmp_path, sending, port):
     sending(f"udp://127.0.0.1:{port}?pkt_size=1316", "mpegts")
     out = tmp_path / "dive.mkv"
-    check(out, record(f"udp://127.0.0.1:{port}", out, 1.2), 1.2)
+    check(out, record(f"udp://127.0.0.1:{port}", out, LENGTH), 30)
     assert [file.name for file in tmp_path.iterdir()] == ["dive.mkv"]
 
 
@@ -69,7 +74,7 @@ def test_rtp_with_an_sdp_file_is_copied_with_its_times(tmp_path, sending, port):
     sending(f"rtp://127.0.0.1:{port}", "rtp")
     (tmp_path / "camera.sdp").write_text(SDP.format(port=port))
     out = tmp_path / "made" / "dive.mkv"
-    check(out, record(str(tmp_path / "camera.sdp"), out, 1.2), 1.2)
+    check(out, record(str(tmp_path / "camera.sdp"), out, LENGTH), 30)
 
 
 def test_a_recording_that_is_closed_early_plays(tmp_path, sending, port):
@@ -80,7 +85,7 @@ def test_a_recording_that_is_closed_early_plays(tmp_path, sending, port):
             assert not out.exists()
             if last.frames == 20:
                 break
-    check(out, last, 20 / 25)
+    check(out, last, 20)
 
 
 def test_a_stream_that_does_not_answer_is_told_in_time_and_leaves_nothing(tmp_path, port):
