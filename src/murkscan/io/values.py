@@ -105,6 +105,8 @@ def _read(kind: Any, plain: Any, where: str) -> Any:
         return plain
     if origin in (types.UnionType, typing.Union):
         return None if plain is None else _read(_not_none(inside), plain, where)
+    if origin is typing.Literal:
+        return _require_one_of(inside, plain, where)
     if origin is typing.Annotated:
         return _read(inside[0], plain, where)
     if dataclasses.is_dataclass(kind):
@@ -158,6 +160,12 @@ def _require(kind: Any, plain: Any, where: str) -> Any:
     # JSON's true is no number, although Python's is.
     if not isinstance(plain, kind) or (isinstance(plain, bool) and kind is not bool):
         raise _Odd(f"{str(plain)[:40]!r} at {where or 'its top'}")
+    return plain
+
+
+def _require_one_of(words: tuple[Any, ...], plain: Any, where: str) -> Any:
+    if plain not in words:
+        raise _Odd(f"{str(plain)[:40]!r} at {where}, which is none of {', '.join(map(str, words))}")
     return plain
 
 
