@@ -51,6 +51,39 @@ def test_a_mesh_comes_back_as_it_was(tmp_path, suffix):
     assert back.filled is None
 
 
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_a_surface_far_from_the_origin_keeps_its_place_and_its_shape(tmp_path, suffix):
+    far = np.array([432100.123, 5412345.678, -12.345])
+    mesh = Mesh(0.1 * pyramid().vertices + far, pyramid().faces)
+    save_mesh(tmp_path / f"mesh{suffix}", mesh)
+    back = load_mesh(tmp_path / f"mesh{suffix}")
+    ours, theirs = (m.vertices[np.lexsort((m.vertices - far).round(4).T)] for m in (mesh, back))
+    # Single precision of numbers below 1 m, and a tenth of a micrometre of OBJ.
+    np.testing.assert_allclose(theirs, ours, rtol=0, atol=1e-7)
+
+
+def test_an_stl_and_a_glb_say_where_they_count_from(tmp_path):
+    mesh = Mesh(pyramid().vertices + np.array([432100.0, 5412345.0, -12.0]), pyramid().faces)
+    for suffix in (".stl", ".glb"):
+        save_mesh(tmp_path / f"mesh{suffix}", mesh)
+    stl = (tmp_path / "mesh.stl").read_bytes()
+    assert stl[:80].rstrip() == b"murkscan: metres, origin 432102 5412349 -8 m"
+    assert np.abs(trimesh.load(tmp_path / "mesh.stl").vertices).max() < 4
+    glb = (tmp_path / "mesh.glb").read_bytes()
+    tables = json.loads(glb[20 : 20 + struct.unpack_from("<I", glb, 12)[0]])
+    assert tables["asset"]["extras"]["origin_m"] == [432102, 5412349, -8]
+    assert np.abs(trimesh.load(tmp_path / "mesh.glb", force="mesh").vertices).max() < 4
+
+
+@pytest.mark.parametrize("words", [b"origin 1 2 nan m", b"origin 1 2 x m", b"origin 1e999 1 1 m"])
+def test_an_origin_that_is_none_is_passed_over(tmp_path, words):
+    save_mesh(tmp_path / "mesh.stl", pyramid())
+    data = (tmp_path / "mesh.stl").read_bytes()
+    head = (b"murkscan: metres, " + words).ljust(80)
+    (tmp_path / "mesh.stl").write_bytes(head + data[80:])
+    assert np.abs(load_mesh(tmp_path / "mesh.stl").vertices).max() < 10
+
+
 @pytest.mark.parametrize("suffix", [".ply", ".obj", ".glb"])
 def test_colours_come_back(tmp_path, suffix):
     save_mesh(tmp_path / f"mesh{suffix}", coloured())

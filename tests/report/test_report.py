@@ -198,7 +198,7 @@ def test_the_summary_counts_frames_and_points():
     assert content["frames"]["skipped"] == 1
     assert content["frames"]["skips"] == [{"frame": 4, "frames": 1, "reason": "4.png broke"}]
     assert content["points"] == {"on_profiles": 120, "outliers": 3, "in_cloud": 120}
-    assert content["mesh"] == {"vertices": 5, "faces": 2}
+    assert content["mesh"] == {"vertices": 5, "faces": 2, "origin_m": [0.0, 0.0, 0.0]}
     assert content["spacing_along_stripe_mm"]["median"] == pytest.approx(1.0)
     assert content["spacing_along_motion_mm"]["percent_95"] == pytest.approx(4.0)
     assert content["depth_mm"]["largest"] == pytest.approx(500)

@@ -6,11 +6,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import FormatError, InputError
-from ..types.arrays import Colours, FaceMask, Faces
+from ..types.arrays import Colours, FaceMask, Faces, Vector
 from ..types.cloud import FARTHEST
 from ..types.mesh import Mesh
 from . import mesh_glb, mesh_obj, mesh_ply
 from .atomic import replacing
+from .mesh_origin import (
+    SINGLE,
+    choose_origin,
+    find_in_glb,
+    find_in_stl,
+    state_in_glb,
+    state_in_stl,
+)
 
 if TYPE_CHECKING:
     import trimesh
@@ -26,7 +34,8 @@ def save_mesh(path: Path, mesh: Mesh) -> None:
     PLY, STL and OBJ keep our axes and metres (STL and OBJ know no unit). GLB is in metres with y up
     and z towards the viewer by its standard, so its y and z are ours negated: half a turn about x,
     after which a viewer shows the front of the object upright, as the camera saw it. Colours are
-    written to all but STL, the mark of triangles that close a hole to PLY only.
+    written to all but STL, the mark of triangles that close a hole to PLY only. Where vertices lie
+    far from 0, STL and GLB count from an origin near them (`file_origin`), which they state.
 
     Args:
         path: Where the file shall be: .ply or .obj (vertices in double precision), .stl or .glb
@@ -44,11 +53,17 @@ def save_mesh(path: Path, mesh: Mesh) -> None:
         aside.write_bytes(_WRITERS[kind](mesh))
 
 
+def file_origin(path: Path, mesh: Mesh) -> Vector:
+    """Tell where the coordinates count from that `save_mesh` writes [m]; 0 in double precision."""
+    return choose_origin(mesh.vertices) if path.suffix.lower() in SINGLE else np.zeros(3)
+
+
 def load_mesh(path: Path) -> Mesh:
     """Read a mesh in the format that the path's suffix names, in our axes.
 
-    A GLB is turned back. The corners that an STL repeats for every triangle are joined. Of an OBJ
-    and a GLB only the triangles are read, never their materials.
+    A GLB is turned back. An origin that the file states is added. The corners that an STL repeats
+    for every triangle are joined. Of an OBJ and a GLB only the triangles are read, never their
+    materials.
 
     Raises:
         InputError: Another suffix than .ply, .stl, .obj or .glb.
@@ -60,6 +75,7 @@ def load_mesh(path: Path) -> Mesh:
 
     kind = _kind(path)
     data = path.read_bytes()
+    origin = _ORIGINS[kind](data) if kind in _ORIGINS else np.zeros(3)
     if kind in _STRIPPED:
         data = _STRIPPED[kind](path, data)
     try:
@@ -73,7 +89,7 @@ def load_mesh(path: Path) -> Mesh:
     if len(faces) == 0 or not is_placed or not _is_inside(faces, len(vertices)):
         raise FormatError(f"{path} has no triangles, or some without a place; it is damaged.")
     vertices = vertices * _GLB_FROM_OURS if kind == "glb" else vertices
-    return Mesh(vertices, faces, filled, colours)
+    return Mesh(vertices + origin, faces, filled, colours)
 
 
 def check_mesh_suffix(path: Path) -> None:
@@ -98,22 +114,24 @@ def _kind(path: Path) -> str:
 def _as_stl(mesh: Mesh) -> bytes:
     import trimesh
 
-    made = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False, validate=False)
-    return made.export(file_type="stl")
+    origin = choose_origin(mesh.vertices)
+    made = trimesh.Trimesh(mesh.vertices - origin, mesh.faces, process=False, validate=False)
+    return state_in_stl(made.export(file_type="stl"), origin)
 
 
 def _as_glb(mesh: Mesh) -> bytes:
     import trimesh
 
     colours = None if mesh.colours is None else _as_light(mesh.colours)
+    origin = choose_origin(mesh.vertices)
     made = trimesh.Trimesh(
-        mesh.vertices * _GLB_FROM_OURS,
+        (mesh.vertices - origin) * _GLB_FROM_OURS,
         mesh.faces,
         vertex_colors=colours,
         process=False,
         validate=False,
     )
-    return made.export(file_type="glb")
+    return state_in_glb(made.export(file_type="glb"), origin)
 
 
 def _as_light(colours: Colours) -> Colours:
@@ -157,5 +175,6 @@ _STRIPPED = {
     "obj": mesh_obj.only_geometry,
     "glb": mesh_glb.only_geometry,
 }
+_ORIGINS = {"stl": find_in_stl, "glb": find_in_glb}
 _WRITERS = {"ply": mesh_ply.as_ply, "stl": _as_stl, "obj": mesh_obj.as_obj, "glb": _as_glb}
 _NAMES = {"ply": "a PLY", "stl": "an STL", "obj": "an OBJ", "glb": "a GLB"}

@@ -49,9 +49,9 @@ def _nearest(sample: Sample, end: Vector) -> int:
     away = np.linalg.norm(sample.cloud.points - end, axis=1)
     number = int(np.argmin(away))
     if away[number] > _FARTHEST:
-        x, y, z = end
+        place = ",".join(f"{part:.10g}" for part in end)
         raise InputError(
-            f"No point of the scan lies within {_FARTHEST * 1e3:.0f} mm of {x:g},{y:g},{z:g} m, "
+            f"No point of the scan lies within {_FARTHEST * 1e3:.0f} mm of {place} m, "
             f"the nearest is {away[number] * 1e3:.0f} mm away; read both ends off cloud/cloud.ply, "
             "whose coordinates are metres."
         )

@@ -35,7 +35,7 @@ EXTRACT = Kind("extract", ExtractResult, meaning=1)
 TRIANGULATE = Kind("triangulate", TriangulateResult, meaning=2)
 MOTION = Kind("motion", MotionResult, meaning=2)
 CLOUD = Kind("cloud", CloudResult, meaning=2)
-MESH = Kind("mesh", MeshResult, meaning=2)
+MESH = Kind("mesh", MeshResult, meaning=3)
 VIEW = Kind("view", ViewResult, meaning=2)
 REPORT = Kind("report", ReportResult, meaning=2)
 

@@ -178,6 +178,8 @@ class MeshResult:
     holes_left: int | None = None
     faces_filled: int | None = None
     """Faces that close holes."""
+    origin: tuple[float, ...] = field(default=(0.0, 0.0, 0.0), metadata={"unit": "m"})
+    """Where the coordinates of mesh.stl and mesh.glb count from in the world [m]."""
 
 
 @dataclass(frozen=True)
@@ -273,6 +275,8 @@ class ScanRecord:
     """The Choice of each kind."""
     passes: tuple["PassRecord", ...] = ()
     """The passes of a merged cloud."""
+    origin: tuple[float, ...] = field(default=(0.0, 0.0, 0.0), metadata={"unit": "m"})
+    """Where the coordinates of mesh.stl and mesh.glb count from in the world [m]."""
 
 
 @dataclass(frozen=True)

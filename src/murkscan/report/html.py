@@ -116,10 +116,14 @@ def _headline(summary: ScanSummary) -> list[Block]:
 
 
 def size_facts(model: Model) -> list[tuple[str, str]]:
-    """Say how large a cloud is, where it has points."""
+    """Say how large a cloud is, where it has points, and from where its files count."""
     if model.size is None:
         return []
-    return [(" × ".join(f"{1e3 * edge:.0f}" for edge in model.size), "mm along x, y and z")]
+    facts = [(" × ".join(f"{1e3 * edge:.0f}" for edge in model.size), "mm along x, y and z")]
+    if any(model.origin):
+        origin = ", ".join(f"{x:.0f}" for x in model.origin)
+        facts.append((origin, "m: origin of mesh.stl and mesh.glb, to be added to their numbers"))
+    return facts
 
 
 def _verdict(summary: ScanSummary) -> list[Block]:

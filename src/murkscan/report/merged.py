@@ -135,7 +135,11 @@ def merged_as_json(summary: MergedSummary) -> dict[str, Any]:
         "merged": [_as_plain_pass(one) for one in summary.passes],
         "disagreement": [_as_plain_pair(one) for one in summary.pairs],
         "points": {"in_cloud": model.points},
-        "mesh": {"vertices": model.vertices, "faces": model.faces},
+        "mesh": {
+            "vertices": model.vertices,
+            "faces": model.faces,
+            "origin_m": list(model.origin),
+        },
         "size_mm": None if model.size is None else [round_off(1e3 * edge) for edge in model.size],
         "uncertainty_mm": None if summary.trust is None else as_uncertainty(summary.trust),
         "not_in_uncertainty": list(summary.unstated),

@@ -19,7 +19,11 @@ def as_json(summary: ScanSummary) -> dict[str, Any]:
     return {
         "format": 1,
         **_counts(summary),
-        "mesh": {"vertices": model.vertices, "faces": model.faces},
+        "mesh": {
+            "vertices": model.vertices,
+            "faces": model.faces,
+            "origin_m": list(model.origin),
+        },
         "size_mm": None if model.size is None else [round_off(1e3 * edge) for edge in model.size],
         "signal_grey_levels": as_plain(summary.signal, 1.0),
         "depth_mm": as_plain(summary.depth, 1e3),

@@ -81,3 +81,5 @@ class Model:
     faces: int
     size: tuple[float, float, float] | None
     """Extent of the cloud along the world's x, y and z [m]; None without points."""
+    origin: tuple[float, ...] = (0.0, 0.0, 0.0)
+    """Where the coordinates of mesh.stl and mesh.glb count from in the world [m]."""

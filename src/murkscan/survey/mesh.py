@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ..distribute import AbstractExecutor, Threads
-from ..io.mesh_files import check_mesh_suffix, save_mesh
+from ..io.mesh_files import check_mesh_suffix, file_origin, save_mesh
 from ..mesh import AbstractMesher, AbstractPaint, ByDepth, close_holes, decimate, join_tiles
 from ..project import CLOUD, MESH, MeshResult, Project, describe, find_trajectory, is_merged
 from ..project.blocks import BLOCK, Block, cut_blocks, trim_beside
@@ -77,7 +77,12 @@ def build_mesh(
             project.save_mesh(mesh)
         return result
 
-    return run_stage(project, stage, make, prepare=prepare, progress=progress)
+    result = run_stage(project, stage, make, prepare=prepare, progress=progress)
+    record = project.load_scan()
+    if record.origin != result.origin:
+        with project.hold():
+            project.save_scan(replace(record, origin=result.origin))
+    return result
 
 
 def export_mesh(project: Project, path: Path) -> int:
@@ -175,6 +180,7 @@ def _finish(mesh: Mesh, project: Project, finish: Finish) -> tuple[Mesh, MeshRes
         holes_closed=closed,
         holes_left=left,
         faces_filled=None if mesh.filled is None else int(mesh.filled.sum()),
+        origin=tuple(file_origin(Path("mesh.stl"), mesh).tolist()),
     )
 
 

@@ -142,6 +142,7 @@ def _summarise(project: Project, spacing: float | None) -> ScanSummary:
         durations={word: stage.record.seconds for word, stage in stages.items()},
         pictures=_pictures(project),
     )
+    summary = replace(summary, model=replace(summary.model, origin=mesh.origin))
     kept = project.load_kept_parts()
     return with_coverage(summary, kept, frames=frames, trajectory=trajectory)
 
