@@ -117,7 +117,7 @@ def scan(scene: Scene) -> Sample:
     background = extractor.learn(frames, scene.rig)
     stripes = list(extractor.extract(frames, scene.rig, background))
     profile = triangulate(Stripe.concatenate(stripes), scene.rig, RaySheet())
-    cloud = remove_outliers(merge_profiles(profile, scene.trajectory, axis="y"))
+    cloud = remove_outliers(merge_profiles(profile, scene.trajectory, axes=("y",)))
     rays = cloud.points - scene.trajectory.positions[cloud.frame]
     rays /= np.linalg.norm(rays, axis=1, keepdims=True)
     sight = Sight(rays, np.tile([1.0, 0.0, 0.0], (len(cloud), 1)))

@@ -79,7 +79,7 @@ def scan(scene: Scene, extractor_name: str, frames: list[Frame]) -> Sample:
     background = extractor.learn(frames, scene.rig)
     stripes = list(extractor.extract(frames, scene.rig, background))
     profile = triangulate(Stripe.concatenate(stripes), scene.rig, RaySheet())
-    cloud = remove_outliers(merge_profiles(profile, scene.trajectory, axis="y"))
+    cloud = remove_outliers(merge_profiles(profile, scene.trajectory, axes=("y",)))
     cameras = scene.trajectory.at(scene.times).positions[cloud.frame]
     rays = cloud.points - cameras
     rays /= np.linalg.norm(rays, axis=1, keepdims=True)

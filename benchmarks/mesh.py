@@ -105,7 +105,7 @@ def scan_hull(folder: Path) -> Project:
     rig = load_rig(recorded / "rig.toml")
     recording = open_recording(recorded / "recording.mkv", fields="top-first")
     project = Project(folder / "scan")
-    begin_scan(project, recording, rig, laser=0, settings={})
+    begin_scan(project, recording, rig, settings={})
     extract_recording(project, recording, rig, Murk())
     triangulate_stripes(project, rig, RaySheet())
     follow_motion(project, ConstantSpeed(SPEED, rig.lasers[0].axis))

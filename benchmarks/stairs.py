@@ -48,7 +48,7 @@ def scan_cloud(extractor: AbstractExtractor, out: Path) -> PointCloud:
     """Run the stages up to the cloud."""
     recording = open_recording(DATA / "stage_stairs" / "scan", wavelength=RIG.wavelength)
     project = Project(out)
-    begin_scan(project, recording, RIG, laser=0, settings={"extractor": extractor})
+    begin_scan(project, recording, RIG, settings={"extractor": extractor})
     extract_recording(project, recording, RIG, extractor)
     triangulate_stripes(project, RIG, RaySheet())
     follow_motion(project, ConstantStep(1e-3, "x"))

@@ -50,7 +50,7 @@ def model(folder: Path, out: Path, speed: float) -> None:
 
     recording, rig = opened(folder)
     project = ms.Project(out)
-    begin_scan(project, recording, rig, laser=0, settings={})
+    begin_scan(project, recording, rig, settings={})
     extract_recording(project, recording, rig, ms.GrayGravity())
     triangulate_stripes(project, rig, ms.RaySheet())
     follow_motion(project, ms.ConstantSpeed(speed, "y"))

@@ -92,7 +92,7 @@ def as_profile(
 def scan_cloud(surface: Surface, **settings: float | bool) -> PointCloud:
     """Scan a surface and merge the profiles."""
     profile, trajectory = scan(surface, **settings)
-    return merge_profiles(profile, trajectory, axis="x")
+    return merge_profiles(profile, trajectory, axes=("x",))
 
 
 def _meet(

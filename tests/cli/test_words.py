@@ -23,8 +23,8 @@ def test_a_path_is_never_broken():
 
 
 def test_frames_without_a_stripe_are_told_and_many_come_with_advice():
-    few = ExtractResult(0, frames=100, skipped=0, frames_without_stripe=5, points=900)
-    many = ExtractResult(0, frames=100, skipped=0, frames_without_stripe=60, points=300)
+    few = ExtractResult((0,), frames=100, skipped=0, frames_without_stripe=5, points=900)
+    many = ExtractResult((0,), frames=100, skipped=0, frames_without_stripe=60, points=300)
     assert tell_quality(few) == ("5 frames (5%) show no stripe",)
     assert "extract/overlay" in tell_quality(many)[0]
     assert "100 frames read, 0 skipped" in tell_made(few)

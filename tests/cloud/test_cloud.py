@@ -33,7 +33,7 @@ def degrees_off(surface, cloud, *, steepest=70):
 
 def test_points_are_carried_to_the_world_in_their_order():
     profile, trajectory = scan(plane)
-    cloud = merge_profiles(profile, trajectory, axis="x")
+    cloud = merge_profiles(profile, trajectory, axes=("x",))
     np.testing.assert_allclose(cloud.points, trajectory.transform(profile.points, profile.time))
     np.testing.assert_array_equal(cloud.frame, profile.frame)
     np.testing.assert_array_equal(cloud.scan_line, profile.pixels[:, 1])
@@ -75,7 +75,7 @@ def test_normals_face_a_camera_on_either_side():
     turned = Trajectory(
         trajectory.times, trajectory.positions, np.tile([0.0, 0.0, 1.0, 0.0], (2, 1))
     )
-    cloud = merge_profiles(profile, turned, axis="x")
+    cloud = merge_profiles(profile, turned, axes=("x",))
     cameras = turned.transform(np.zeros_like(profile.points), profile.time)
     towards = np.einsum("ij,ij->i", cloud.normals, cameras - cloud.points)
     assert (towards > 0).all()
@@ -85,14 +85,14 @@ def test_a_stripe_along_rows_has_image_columns_for_scan_lines():
     profile, trajectory = scan(plane)
     turned = replace(profile, pixels=profile.pixels[:, ::-1].copy())
     np.testing.assert_array_equal(
-        merge_profiles(turned, trajectory, axis="y").normals,
-        merge_profiles(profile, trajectory, axis="x").normals,
+        merge_profiles(turned, trajectory, axes=("y",)).normals,
+        merge_profiles(profile, trajectory, axes=("x",)).normals,
     )
 
 
 def test_a_profile_alone_has_no_normals_but_stays():
     profile, trajectory = scan(plane)
-    cloud = merge_profiles(profile[profile.frame == 3], trajectory, axis="x")
+    cloud = merge_profiles(profile[profile.frame == 3], trajectory, axes=("x",))
     assert len(cloud) == 200
     assert not cloud.normals.any()
     assert len(remove_outliers(cloud)) == 200
@@ -100,7 +100,7 @@ def test_a_profile_alone_has_no_normals_but_stays():
 
 def test_nothing_merges_to_nothing():
     profile, trajectory = scan(plane)
-    cloud = merge_profiles(profile[:0], trajectory, axis="x")
+    cloud = merge_profiles(profile[:0], trajectory, axes=("x",))
     assert len(remove_outliers(cloud)) == 0
 
 
@@ -108,15 +108,15 @@ def test_points_that_are_not_finite_are_refused():
     profile, trajectory = scan(plane)
     profile.points[5] = np.nan
     with pytest.raises(InputError, match="1 of 24000 points are not finite"):
-        merge_profiles(profile, trajectory, axis="x")
+        merge_profiles(profile, trajectory, axes=("x",))
 
 
 def test_two_lasers_do_not_mix():
     profile, trajectory = scan(plane)
     behind = replace(profile, points=profile.points * 1.1, laser=profile.laser + np.uint8(1))
-    parts = [merge_profiles(p, trajectory, axis="x") for p in (profile, behind)]
+    parts = [merge_profiles(p, trajectory, axes=("x", "x")) for p in (profile, behind)]
     both = type(profile).concatenate([profile, behind])
-    merged = merge_profiles(both, trajectory, axis="x")
+    merged = merge_profiles(both, trajectory, axes=("x", "x"))
     np.testing.assert_array_equal(merged.normals[: len(profile)], parts[0].normals, strict=True)
 
 
@@ -139,7 +139,7 @@ def test_outliers_are_found_and_true_points_kept(surface, noise):
     shift = random.uniform(0.01, 0.1, len(profile)) * random.choice([-1, 1], len(profile))
     ranges = np.linalg.norm(profile.points, axis=1)
     profile.points[spikes] *= (1 + shift / ranges)[spikes, None]
-    cloud = merge_profiles(profile, trajectory, axis="x")
+    cloud = merge_profiles(profile, trajectory, axes=("x",))
     kept = np.isin(cloud.points[:, 2], remove_outliers(cloud).points[:, 2])
     assert np.mean(kept[spikes]) < 0.1
     assert np.mean(kept[~spikes]) > 0.999
@@ -150,6 +150,6 @@ def test_points_far_from_all_others_are_outliers():
     points[50] = [0.0, 0.015, 0.3]
     profile = as_profile(points, np.zeros(100, int), np.arange(100))
     still = Trajectory(np.zeros(1), np.zeros((1, 3)), np.array([[1.0, 0.0, 0.0, 0.0]]))
-    kept = remove_outliers(merge_profiles(profile, still, axis="x"))
+    kept = remove_outliers(merge_profiles(profile, still, axes=("x",)))
     assert len(kept) == 99
     assert 50 not in kept.scan_line

@@ -46,7 +46,7 @@ def seen(surface, *, add=None, **settings):
     profile, trajectory = scan(surface, **settings)
     profile = profile if add is None else add(profile)
     cameras = trajectory.transform(np.zeros_like(profile.points), profile.time)
-    return SeenCloud(merge_profiles(profile, trajectory, axis="x"), cameras), profile
+    return SeenCloud(merge_profiles(profile, trajectory, axes=("x",)), cameras), profile
 
 
 def with_ghost(scale, frames, lines):

@@ -55,7 +55,7 @@ def measure(points: np.ndarray, stated: float) -> dict[str, Quantity]:
     """Take all measures of the scan with these points in the camera frame."""
     profile, trajectory = SCAN
     sigma = np.full(len(points), stated, np.float32)
-    cloud = merge_profiles(replace(profile, points=points, sigma=sigma), trajectory, axis="x")
+    cloud = merge_profiles(replace(profile, points=points, sigma=sigma), trajectory, axes=("x",))
     rays = points / np.linalg.norm(points, axis=1, keepdims=True)
     sight = Sight(rays, np.tile([0.0, 1.0, 0.0], (len(points), 1)))
     sample, mesh = Sample.from_cloud(cloud, sight=sight), GridMesh().mesh(cloud)

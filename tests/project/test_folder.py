@@ -218,7 +218,7 @@ def test_a_job_stops_at_its_next_step_and_goes_on_later(tmp_path):
     with pytest.raises(Cancelled, match="stopped in extract"):
         run_stage(project, stage, make, prepare=lambda: None, progress=watch)
     assert seen == [("extract", 0, None), ("extract", 1, 3)]
-    result = ExtractResult(0, 1, 0, 0, 1)
+    result = ExtractResult((0,), 1, 0, 0, 1)
     done = run_stage(project, stage, lambda _: result, prepare=lambda: None, progress=Stoppable())
     assert done == result
     assert stage.result() == result

@@ -58,7 +58,7 @@ def _cover(profiles, *, read=None, trajectory=None, axis="y", fields=1):
         SurfaceDirections.from_trajectory(trajectory, axis),
     )
     profiles = profiles if isinstance(profiles, list) else [profiles]
-    return map_coverage(profiles, layout, reach=BRIGHT, wanted=PITCH, spacing=STEP)
+    return map_coverage(profiles, {0: layout}, reach=BRIGHT, wanted=PITCH, spacing=STEP)
 
 
 def _only(coverage):

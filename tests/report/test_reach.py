@@ -129,7 +129,7 @@ def coverage():
         SurfaceDirections.from_trajectory(way, "y"),
     )  # fmt: skip
     reach = Reach.from_points(ranges, profile.signal, noise=background.noise)
-    return map_coverage([profile], layout, reach=reach, wanted=0.006, spacing=0.006)
+    return map_coverage([profile], {0: layout}, reach=reach, wanted=0.006, spacing=0.006)
 
 
 def _areas(coverage, *, across, along):

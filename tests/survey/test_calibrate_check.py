@@ -33,8 +33,8 @@ def scanned(data, tmp_path_factory):
     recording = ms.open_recording(data("stage_stairs") / "scan")
     motion = ms.ConstantStep(0.001, "x")
     project = ms.Project(tmp_path_factory.mktemp("out"))
-    begin_scan(project, recording, rig, laser=0, settings={})
-    extract_recording(project, recording, rig, ms.GrayGravity(), laser=0)
+    begin_scan(project, recording, rig, settings={})
+    extract_recording(project, recording, rig, ms.GrayGravity())
     triangulate_stripes(project, rig, RaySheet())
     follow_motion(project, motion)
     return project

@@ -69,7 +69,9 @@ def scanned(root, profile, trajectory, *, parts):
     """A project with finished extract, triangulate and motion, cut into parts."""
     project = Project(root)
     project.save_scan(SCAN)
-    inputs = {"extract": finish(project, EXTRACT, ExtractResult(0, 120, 0, 0, len(profile))).digest}
+    inputs = {
+        "extract": finish(project, EXTRACT, ExtractResult((0,), 120, 0, 0, len(profile))).digest
+    }
 
     def save_parts():
         for number, frames in enumerate(np.array_split(np.unique(profile.frame), parts)):
@@ -273,7 +275,7 @@ def followed(project, attitude):
     extract = finish(
         project,
         EXTRACT,
-        ExtractResult(0, len(frames), 0, 0, len(cloud)),
+        ExtractResult((0,), len(frames), 0, 0, len(cloud)),
         make=lambda: project.save_stripe_part(0, Stripe.empty(), note),
     )
     count = len(frames)

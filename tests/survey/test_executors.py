@@ -44,7 +44,7 @@ def extract(recorded, out, executor):
     rig = ms.load_rig(recorded / "rig.toml")
     recording = ms.open_recording(recorded / "frames", fps=25.0)
     project = ms.Project(out)
-    begin_scan(project, recording, rig, laser=0, settings={})
+    begin_scan(project, recording, rig, settings={})
     result = extract_recording(project, recording, rig, ms.GrayGravity(), executor=executor)
     triangulate_stripes(project, rig, ms.RaySheet(), executor=executor)
     return result

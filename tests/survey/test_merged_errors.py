@@ -123,7 +123,7 @@ def scanned(root, rig, *, spacing, back, is_adrift=False):
     project, note = Project(root), PartNote(tuple(frames.tolist()), tuple(times.tolist()), (), ())
     project.save_scan(replace(SCAN, rig=as_tables(RIG)))
     extract = finish(
-        project, EXTRACT, ExtractResult(0, len(frames), 0, 0, len(profile)),
+        project, EXTRACT, ExtractResult((0,), len(frames), 0, 0, len(profile)),
         make=lambda: project.save_stripe_part(0, Stripe.empty(), note),
     )  # fmt: skip
     inputs, result = {"extract": extract.digest}, TriangulateResult(len(profile), dropped=0)

@@ -76,7 +76,9 @@ def test_what_was_typed_for_each_stage_is_listed_once_and_in_order(tmp_path):
     def stage_by(words, kind, result):
         finish(Project(tmp_path, words), kind, result)
 
-    stage_by(("extract", "my dive.mkv", "--out", "my out"), EXTRACT, ExtractResult(0, 1, 0, 0, 1))
+    stage_by(
+        ("extract", "my dive.mkv", "--out", "my out"), EXTRACT, ExtractResult((0,), 1, 0, 0, 1)
+    )
     for kind, result in (
         (TRIANGULATE, TriangulateResult(1, 0)),
         (MOTION, MotionResult(1)),

@@ -37,7 +37,7 @@ def test_steps_are_within_a_tenth_of_a_millimetre_of_the_caliper(frames, extract
     background = extractor.learn(frames[::5], RIG)
     stripe = ms.Stripe.concatenate(list(extractor.extract(frames, RIG, background)))
     trajectory = ConstantStep(1e-3, "x").follow(np.arange(65.0), np.arange(65.0))
-    cloud = merge_profiles(triangulate(stripe, RIG, RaySheet()), trajectory, axis="x")
+    cloud = merge_profiles(triangulate(stripe, RIG, RaySheet()), trajectory, axes=("x",))
     bed = fit_plane(cloud.points[(cloud.scan_line < 160) | (cloud.scan_line >= 400)]).plane
     heights = -np.sign(bed.normal[2]) * bed.distance_to(cloud.points)
     for truth, ((first, last), (low, high)) in zip(CALIPER, STEPS, strict=True):

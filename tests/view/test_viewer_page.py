@@ -56,7 +56,7 @@ def turned():
     errors[1, 0, 0], errors[1, 4, 1] = 2e-3, 1e-3
     trajectory = replace(trajectory, quaternions=quaternions, errors=errors)
     cloud = replace(
-        merge_profiles(profile, trajectory, axis="x"),
+        merge_profiles(profile, trajectory, axes=("x",)),
         sigma=np.full(len(profile), 1e-6, np.float32),
     )
     # All is a hundredth too large, and what is far is pushed to the right.

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from ..ui.choices import ExtractorName, check_settings, make_extractor
-from .options import ExecutorFlags, RecordingFlags, Settings
+from .options import ExecutorFlags, Lasers, RecordingFlags, Settings
 from .paths import RecordingPaths, RigFile
 from .progress import progress_bars
 from .typed import WORDS
@@ -18,7 +18,7 @@ def extract(
     work: ExecutorFlags = ExecutorFlags(),
     extractor: ExtractorName = "murk",
     settings: Settings = (),
-    laser: int = 0,
+    laser: Lasers = (),
 ) -> None:
     """Find the stripe in every frame of a recording.
 
@@ -35,7 +35,8 @@ def extract(
     settings
         A setting of the extractor, as NAME=NUMBER; may be given again.
     laser
-        Number of the laser in the rig whose stripe is followed, from 0.
+        Number of a laser in the rig whose stripe is followed, from 0; may be given again. All of
+        them unless given.
     """
     check_settings(settings)
     executor = work.make()
@@ -53,7 +54,7 @@ def extract(
         project,
         pictures,
         of_recording,
-        laser=laser,
+        lasers=laser,
         settings={"extractor": finder},
         rig_file=rig,
     )
@@ -63,7 +64,7 @@ def extract(
             pictures,
             of_recording,
             finder,
-            laser=laser,
+            lasers=laser,
             executor=executor,
             progress=progress,
         )

@@ -23,7 +23,7 @@ def motion(out: ScanFolder, *, flags: MotionFlags = MotionFlags()) -> None:
     recording = Path(load_recording(project).path)
     flags.check(recording)
     rig = load_scan_rig(project)
-    laser = project.finished(EXTRACT).result.laser
-    result = follow_motion(project, flags.make(rig, laser, recording))
+    lasers = project.finished(EXTRACT).result.lasers
+    result = follow_motion(project, flags.make(rig, lasers[0], recording))
     print_result("motion", result, out / "motion", out=out)
     print_remarks(result.remarks)

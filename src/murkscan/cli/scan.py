@@ -16,7 +16,7 @@ from ..ui.choices import (
     make_rules,
 )
 from ..ui.values import read_box
-from .options import ExecutorFlags, MaybePlace, MotionFlags, RecordingFlags, Settings
+from .options import ExecutorFlags, Lasers, MaybePlace, MotionFlags, RecordingFlags, Settings
 from .paths import RecordingPaths, RigFile
 from .progress import progress_bars
 from .typed import WORDS
@@ -35,7 +35,7 @@ def scan(
     settings: Settings = (),
     method: MethodName = "ray-sheet",
     mesher: MesherName = "grid",
-    laser: int = 0,
+    laser: Lasers = (),
     volume_m: MaybePlace = None,
     frames: Annotated[bool, Parameter(negative=())] = False,
 ) -> None:
@@ -60,7 +60,8 @@ def scan(
     mesher
         The way to make a surface.
     laser
-        Number of the laser in the rig whose stripe is followed, from 0.
+        Number of a laser in the rig whose stripe is followed, from 0; may be given again. All of
+        them unless given.
     volume_m
         Leave out of the model what lies outside of this box: two corners X,Y,Z,X,Y,Z in the world
         [m].
@@ -81,12 +82,12 @@ def scan(
         project = run(
             reading.open(recording, of_recording),
             of_recording,
-            motion.make(of_recording, laser, recording[0]),
+            motion.make(of_recording, min(laser, default=0), recording[0]),
             out=out,
             extractor=make_extractor(extractor, settings),
             method=make_method(method),
             mesher=make_mesher(mesher, ()),
-            laser=laser,
+            lasers=laser,
             rules=make_rules(volume_m),
             frames=frames,
             rig_file=rig,

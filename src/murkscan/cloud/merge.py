@@ -1,5 +1,6 @@
 """From profiles in the camera frame to one cloud in the world frame."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,14 +13,14 @@ from ..types.trajectory import Trajectory
 from .normals import estimate_normals
 
 
-def merge_profiles(profile: Profile, trajectory: Trajectory, *, axis: Axis) -> PointCloud:
+def merge_profiles(profile: Profile, trajectory: Trajectory, *, axes: Sequence[Axis]) -> PointCloud:
     """Carry the points of all frames to the world frame and give them normals.
 
     Args:
         profile: The points of all frames, in the camera frame [m].
         trajectory: world_from_camera, over the times of the profile.
-        axis: The camera axis along which the lasers sit: scan lines are image rows for "x", image
-            columns for "y".
+        axes: The camera axis along which each laser sits, as `Rig.axes`: scan lines are image rows
+            for "x", image columns for "y".
 
     Returns:
         The points in the same order, in the world frame [m]. Normals are turned to the camera, and
@@ -29,7 +30,8 @@ def merge_profiles(profile: Profile, trajectory: Trajectory, *, axis: Axis) -> P
     Raises:
         InputError: A time lies outside the trajectory, or a point is not finite.
     """
-    across_stripe = profile.pixels[:, 1 if axis == "x" else 0]
+    side = np.array([1 if axis == "x" else 0 for axis in axes], np.int64)[profile.laser]
+    across_stripe = profile.pixels[np.arange(len(profile)), side]
     cloud = PointCloud(
         points=trajectory.transform(profile.points, profile.time),
         normals=np.zeros((len(profile), 3), np.float32),

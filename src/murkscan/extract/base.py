@@ -20,6 +20,8 @@ class AbstractExtractor(abc.ABC):
 
     look_ahead: ClassVar[int] = 0
     """Frames on both sides of a frame that its stripe depends on, 0 to 8."""
+    tells_lasers_apart: ClassVar[bool] = False
+    """Whether it knows whose line it sees where several lasers are in the picture."""
 
     def learn(self, frames: Sequence[Frame], rig: Rig, *, laser: int = 0) -> Background:
         """Learn what the recording looks like where the stripe is not.

@@ -69,6 +69,7 @@ class Murk(AbstractExtractor):
     """
 
     look_ahead: ClassVar[int] = 7
+    tells_lasers_apart: ClassVar[bool] = True
 
     min_posterior: float = 0.5
     """Probability from which a point is given, at least a half."""

@@ -44,8 +44,8 @@ passes by: speckle and paint of painted, grown-over or bare walls vary by 0.2 to
 window by 0.05 at most (measured on the cases of benchmarks/murk.py with fixed clutter); and the
 most that one ridge counts with: a particle before it, or a digit that changes, is more."""
 _LONE = 1.2
-"""Standing ridges a scan line up to which a steady line is the picture's only one: a still stripe
-on an even wall, if nothing else in the picture is dirt."""
+"""Standing ridges a scan line and laser up to which a steady line is the laser's own: a still
+stripe on an even wall, if nothing else in the picture is dirt."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,7 +106,7 @@ class Standing:
         share = self.pool(both + only, _NEAR_LINES) / len(self.frames)
         is_known = share > _OFTEN * self.pool(self.stand.astype(float), _NEAR_LINES)
         told = np.where(is_known & (lasers == 1), told, 0.0)
-        is_dirty = self.stand.sum() > _LONE * len(self.stand)
+        is_dirty = self.stand.sum() > _LONE * lasers * len(self.stand)
         steady = self.steadiness() + np.where(self.are_crowded(), _MOST_TOLD, 0.0)
         steady = np.where(self.are_moving(), -_MOST_TOLD, steady)
         if not is_dirty:

@@ -12,5 +12,7 @@ from .decimate import decimate as decimate
 from .grid_mesh import GridMesh as GridMesh
 from .holes import ClosedHoles as ClosedHoles
 from .holes import close_holes as close_holes
+from .one_sheet import join_sheets as join_sheets
+from .one_sheet import split_by_laser as split_by_laser
 from .paint import AbstractPaint as AbstractPaint
 from .poisson import Poisson as Poisson

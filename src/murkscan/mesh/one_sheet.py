@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..geometry.overlap import lies_on
+from ..types.arrays import SmallNumbers
 from ..types.mesh import Mesh
 from .base import drop_unused_vertices, empty_mesh
 
@@ -26,6 +27,21 @@ def join_sheets(sheets: Sequence[Mesh]) -> Mesh:
             kept = drop_unused_vertices(replace(sheet, faces=sheet.faces[~lies_on(sheet, joined)]))
         joined = lay_together([joined, kept])
     return joined
+
+
+def split_by_laser(mesh: Mesh, laser: SmallNumbers) -> list[Mesh]:
+    """Part a surface into the sheets of its lasers, between which there are no triangles.
+
+    Args:
+        mesh: The surface; its vertices know their points.
+        laser: Number of the laser that lit each of the points.
+    """
+    assert mesh.points is not None
+    own = laser[mesh.points[mesh.faces[:, 0]]]
+    return [
+        drop_unused_vertices(replace(mesh, faces=mesh.faces[own == number]))
+        for number in np.unique(own)
+    ]
 
 
 def lay_together(meshes: Sequence[Mesh]) -> Mesh:

@@ -67,17 +67,35 @@ def shift_points(
     Returns:
         Shifts at one standard deviation; NaN where a pixel sees no point.
     """
-    parts = {n: common_shifts(pixels[laser == n], rig, n) for n in np.unique(laser).tolist()}
-    modes = max((part.shape[2] for part in parts.values()), default=0)
-    shifts: Float[np.ndarray, "n 3 modes"] = np.zeros((len(pixels), 3, modes))
-    for number, part in parts.items():
-        shifts[laser == number] = part
+    shifts = _shifts_in_rig(pixels, laser, rig)
     moments, which = np.unique(times, return_inverse=True)
     attitudes = Rotation.from_quat(trajectory.at(moments).quaternions, scalar_first=True)
     world_from_rig = attitudes.as_matrix()
     if rig.vehicle_from_camera is not None:
         world_from_rig = world_from_rig @ rig.vehicle_from_camera.rotation.T
     return world_from_rig[which] @ shifts
+
+
+def shifts_in_camera(pixels: Pixels, laser: SmallNumbers, rig: Rig) -> Shifts:
+    """Compute how far points move with each error of their rig, along the camera's axes.
+
+    The arguments are those of `shift_points`, and so is what comes back [m].
+    """
+    shifts = _shifts_in_rig(pixels, laser, rig)
+    if rig.vehicle_from_camera is None:
+        return shifts
+    turned: Shifts = rig.vehicle_from_camera.rotation.T @ shifts
+    return turned
+
+
+def _shifts_in_rig(pixels: Pixels, laser: SmallNumbers, rig: Rig) -> Shifts:
+    """Compute the shifts of points that several lasers lit, along the axes of `common_shifts`."""
+    parts = {n: common_shifts(pixels[laser == n], rig, n) for n in np.unique(laser).tolist()}
+    modes = max((part.shape[2] for part in parts.values()), default=0)
+    shifts: Float[np.ndarray, "n 3 modes"] = np.zeros((len(pixels), 3, modes))
+    for number, part in parts.items():
+        shifts[laser == number] = part
+    return shifts
 
 
 def shifts_in_world(profile: Profile, trajectory: Trajectory, rig: Rig) -> Shifts:

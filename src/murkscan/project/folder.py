@@ -216,16 +216,15 @@ class Project:
         """Read all profiles of a finished triangulate, in order of frames."""
         return Profile.concatenate(list(self.load_profile_parts()))
 
-    def save_background(self, background: Background) -> None:
-        """Write extract/background.json: what the extractor has learnt."""
-        with self._files(EXTRACT).making("background.json") as path:
+    def save_background(self, background: Background, laser: int = 0) -> None:
+        """Write what the extractor has learnt of a laser's stripe, and of what is beside it."""
+        with self._files(EXTRACT).making(_background_name(laser)) as path:
             save_value(path, background)
 
-    def load_background(self) -> Background | None:
+    def load_background(self, laser: int = 0) -> Background | None:
         """Read what the extractor has learnt; None where that has not been kept."""
-        if not self._files(EXTRACT).made("background.json"):
-            return None
-        return load_value(self._files(EXTRACT).checked("background.json"), Background)
+        name, files = _background_name(laser), self._files(EXTRACT)
+        return load_value(files.checked(name), Background) if files.made(name) else None
 
     def save_overlay(self, name: str, picture: ColourImage) -> None:
         """Write one picture of what was found, extract/overlay/<name>.png."""
@@ -389,6 +388,10 @@ def _stripe_name(part: int) -> str:
 
 def _note_name(part: int) -> str:
     return f"frames/{part:06d}.json"
+
+
+def _background_name(laser: int) -> str:
+    return f"background-{laser}.json" if laser else "background.json"
 
 
 def _profile_name(part: int) -> str:

@@ -31,7 +31,7 @@ class Kind(Generic[R]):
     raises this number: folders of earlier versions are then made anew."""
 
 
-EXTRACT = Kind("extract", ExtractResult, meaning=1)
+EXTRACT = Kind("extract", ExtractResult, meaning=2)
 TRIANGULATE = Kind("triangulate", TriangulateResult, meaning=2)
 MOTION = Kind("motion", MotionResult, meaning=2)
 CLOUD = Kind("cloud", CloudResult, meaning=2)

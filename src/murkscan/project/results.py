@@ -19,20 +19,22 @@ if TYPE_CHECKING:
 class ExtractResult:
     """What was found in the pictures."""
 
-    laser: int
-    """Number of the laser in the rig whose stripe was looked for."""
+    lasers: tuple[int, ...]
+    """Numbers of the lasers in the rig whose stripes were looked for."""
     frames: int
     """Frames that were read."""
     skipped: int
     """Frames that could not be read."""
     frames_without_stripe: int
     points: int
-    """Stripe centres."""
+    """Stripe centres, of all lasers."""
     skips: tuple[Skipped, ...] = ()
     remarks: tuple[str, ...] = ()
     """What is odd about the recording, with its cure; sentences for the user."""
     attenuation: Attenuation | None = None
     """How murky the water was, where the glow tells."""
+    points_of: tuple[int, ...] = ()
+    """Stripe centres of each laser."""
 
 
 @dataclass(frozen=True)

@@ -1,14 +1,14 @@
 """Which parts of the surface the scan has, which it has not, and why not."""
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from jaxtyping import Float, Int
 
 from ..types.arrays import Scalars
 from ..types.profile import Profile
-from .coverage_cells import CellSums, gather_cells
+from .coverage_cells import CellSums, choose_fullest, gather_cells
 from .directions import SurfaceDirections
 from .reach import Reach
 from .strips import cut_strips
@@ -69,7 +69,7 @@ class Coverage:
 
 def map_coverage(
     profiles: Iterable[Profile],
-    layout: SwathLayout,
+    layouts: Mapping[int, SwathLayout],
     *,
     reach: Reach,
     wanted: float,
@@ -79,30 +79,50 @@ def map_coverage(
 
     Each point is joined to the next of its scan line. What lies between two that are more than
     `HOLE` wanted spacings apart is missing. What no profile lies around is not known to be a
-    surface and is not counted.
+    surface and is not counted. Where several lasers passed a place, that which shows most of it
+    says what it is.
 
     Args:
         profiles: The points, in parts of whole frames in order; each is looked at once.
-        layout: How they lie on frames and scan lines.
+        layouts: How those of each laser lie on frames and scan lines, by its number.
         reach: How far the light went.
         wanted: Wanted spacing of the points [m].
         spacing: The larger of the usual spacings along and across [m].
     """
-    hole = HOLE * wanted
-    cell = max(_CELL * max(wanted, spacing), layout.reach / _MOST_CELLS)
-    sums: list[CellSums] = []
-    before: Swath | None = None
-    pitch, num_lit = 0.0, 0
-    for swath in layout.lay_out(profiles, hole=hole):
-        later = swath.after(num_lit)
-        num_lit += len(later.lit)
-        pitch = later.pitch() or pitch
-        both = later.append_to(before)
-        strips = cut_strips(both, hole=hole, pitch=pitch, reach=reach)
-        is_point = later.cause == COVERED
-        sums.append(CellSums.from_part(later.along[is_point], later.across[is_point], strips, cell))
-        before = both.last_of_each_line()
-    cells = gather_cells(sums, edge=cell)
+    hole, first = HOLE * wanted, next(iter(layouts.values()))
+    cell = max(_CELL * max(wanted, spacing), first.reach / _MOST_CELLS)
+    sheets = {laser: _Sheet(layout, reach, hole, cell) for laser, layout in layouts.items()}
+    for profile in profiles:
+        for laser, sheet in sheets.items():
+            sheet.add(profile[profile.laser == laser])
+    cells = gather_cells(choose_fullest([sheet.sums for sheet in sheets.values()]), edge=cell)
     if cells is None:
         return None
-    return Coverage(layout.directions, wanted, hole, cell, *cells, reach=reach)
+    return Coverage(first.directions, wanted, hole, cell, *cells, reach=reach)
+
+
+@dataclass(eq=False)
+class _Sheet:
+    """What one laser's sheet has passed over so far."""
+
+    layout: SwathLayout
+    reach: Reach
+    hole: float
+    cell: float
+    sums: list[CellSums] = field(default_factory=list)
+    before: Swath | None = None
+    pitch: float = 0.0
+    num_lit: int = 0
+
+    def add(self, profile: Profile) -> None:
+        """Add the points of a part, whole frames that follow on those before."""
+        for swath in self.layout.lay_out([profile], hole=self.hole):
+            later = swath.after(self.num_lit)
+            self.num_lit += len(later.lit)
+            self.pitch = later.pitch() or self.pitch
+            both = later.append_to(self.before)
+            strips = cut_strips(both, hole=self.hole, pitch=self.pitch, reach=self.reach)
+            is_point = later.cause == COVERED
+            along, across = later.along[is_point], later.across[is_point]
+            self.sums.append(CellSums.from_part(along, across, strips, self.cell))
+            self.before = both.last_of_each_line()

@@ -45,6 +45,40 @@ class CellSums:
         return cls(_as_cells(keys), points, areas.reshape(-1, _CLASSES))
 
 
+def choose_fullest(sheets: Sequence[Sequence[CellSums]]) -> Sequence[CellSums]:
+    """Take each cell as the sheet has it that covers most of it, so that no surface counts twice.
+
+    Args:
+        sheets: The sums of each sheet, in parts.
+
+    Returns:
+        Sums of cells; the points of a cell are those of all sheets.
+    """
+    if len(sheets) == 1:
+        return sheets[0]
+    whole = [_add_up(parts) for parts in sheets]
+    cells = np.concatenate([one.cell for one in whole])
+    areas = np.concatenate([one.areas for one in whole])
+    places, which = np.unique(cells, axis=0, return_inverse=True)
+    which = which.ravel()
+    # The last of a cell's entries, in order of what they cover, then of what they know.
+    order = np.lexsort((areas.sum(axis=1), areas[:, 0], which))
+    last = order[np.flatnonzero(np.diff(which[order], append=-1))]
+    points = np.bincount(which, np.concatenate([one.points for one in whole]), len(places))
+    return [CellSums(places, points, areas[last])]
+
+
+def _add_up(parts: Sequence[CellSums]) -> CellSums:
+    """Add up what parts of one sheet say of the same cells."""
+    cells = np.concatenate([np.zeros((0, 2), np.int64), *(part.cell for part in parts)])
+    areas = np.concatenate([np.zeros((0, _CLASSES)), *(part.areas for part in parts)])
+    points = np.concatenate([np.zeros(0), *(part.points for part in parts)])
+    places, which = np.unique(cells, axis=0, return_inverse=True)
+    which = which.ravel()
+    sums = [np.bincount(which, column, len(places)) for column in (points, *areas.T)]
+    return CellSums(places, sums[0], np.stack(sums[1:], axis=1).reshape(-1, _CLASSES))
+
+
 _Map = tuple[tuple[float, float], Int[np.ndarray, "h w"], Float[np.ndarray, "k h w"], Scalars]
 
 

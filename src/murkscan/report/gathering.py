@@ -1,6 +1,6 @@
 """Numbers of all points, gathered part by part, so that a scan need not fit into memory."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,12 +31,14 @@ class Gathered:
     belief: Belief
 
 
-def gather(profiles: Iterable[Profile], axis: Axis, trajectory: Trajectory | None) -> Gathered:
+def gather(
+    profiles: Iterable[Profile], axes: Mapping[int, Axis], trajectory: Trajectory | None
+) -> Gathered:
     """Look at each part once.
 
     Args:
         profiles: The points, in parts of whole frames.
-        axis: The camera axis along which the laser sits.
+        axes: The camera axis along which each laser sits, by its number.
         trajectory: world_from_camera; without it there are no distances along the motion.
     """
     parts: list[FrameStatistics] = []
@@ -49,9 +51,11 @@ def gather(profiles: Iterable[Profile], axis: Axis, trajectory: Trajectory | Non
         kept["depth"].add(profile.points[:, 2])
         kept["range"].add(np.linalg.norm(profile.points, axis=1))
         kept["sigma"].add(profile.sigma)
-        kept["along"].add(spacing_along(profile, axis))
-        if trajectory is not None:
-            kept["across"].add(spacing_across(profile, trajectory, axis))
+        for laser, axis in axes.items():
+            mine = profile[profile.laser == laser]
+            kept["along"].add(spacing_along(mine, axis))
+            if trajectory is not None:
+                kept["across"].add(spacing_across(mine, trajectory, axis))
     return Gathered(parts, {name: some.values() for name, some in kept.items()}, belief)
 
 

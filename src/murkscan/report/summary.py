@@ -32,8 +32,8 @@ class ScanSummary:
 
     recorded: Recorded
     rig: Rig
-    laser: int
-    """Number of the laser whose stripe was followed."""
+    lasers: tuple[int, ...]
+    """Numbers of the lasers whose stripes were followed."""
     settings: Mapping[str, Any]
     """Every setting, as plain values."""
     versions: Mapping[str, str]
@@ -92,7 +92,7 @@ def summarise(
     profiles: Iterable[Profile],
     *,
     frames: FrameTimes,
-    laser: int = 0,
+    lasers: Sequence[int] = (0,),
     trajectory: Trajectory | None = None,
     cloud: PointCloud | Iterable[PointCloud] | None = None,
     num_outliers: int = 0,
@@ -111,7 +111,7 @@ def summarise(
         rig: The rig that recorded it.
         profiles: The points, in parts of whole frames; each part is looked at once.
         frames: The frames that were read.
-        laser: Number of the laser whose stripe was followed.
+        lasers: Numbers of the lasers whose stripes were followed.
         trajectory: world_from_camera; without it nothing is said about spacing along the motion.
         cloud: The points in the world frame, all at once or in blocks.
         num_outliers: Points that were taken out of the cloud.
@@ -124,7 +124,7 @@ def summarise(
         durations: Time that each stage took [s].
         pictures: What to show, the best first.
     """
-    gathered = gather(profiles, rig.lasers[laser].axis, trajectory)
+    gathered = gather(profiles, {n: rig.lasers[n].axis for n in lasers}, trajectory)
     values = dict(gathered.values)
     reach = Reach.from_points(values.pop("range"), values["signal"], noise=noise)
     spreads = {name: Spread.from_values(numbers) for name, numbers in values.items()}
@@ -139,7 +139,7 @@ def summarise(
     return ScanSummary(
         recorded=recorded,
         rig=rig,
-        laser=laser,
+        lasers=tuple(lasers),
         settings=settings,
         versions=versions,
         durations=durations or {},
@@ -181,15 +181,19 @@ def with_coverage(
     spacing = max(summary.along.median or 0.0, summary.across.median or 0.0)
     if summary.speed is None or not spacing:
         return summary
-    axis = summary.rig.lasers[summary.laser].axis
-    layout = SwathLayout(
-        frames,
-        trajectory,
-        axis,
-        summary.recorded.size,
-        summary.recorded.fields_per_picture,
-        SurfaceDirections.from_trajectory(trajectory, axis),
-    )
+    axes = {number: summary.rig.lasers[number].axis for number in summary.lasers}
+    directions = SurfaceDirections.from_trajectory(trajectory, axes[summary.lasers[0]])
+    layouts = {
+        number: SwathLayout(
+            frames,
+            trajectory,
+            axis,
+            summary.recorded.size,
+            summary.recorded.fields_per_picture,
+            directions,
+        )
+        for number, axis in axes.items()
+    }
     wanted = summary.wanted or spacing
-    coverage = map_coverage(profiles, layout, reach=summary.reach, wanted=wanted, spacing=spacing)
+    coverage = map_coverage(profiles, layouts, reach=summary.reach, wanted=wanted, spacing=spacing)
     return replace(summary, coverage=coverage)

@@ -25,7 +25,6 @@ from ..project import (
 from ..project.blocks import BLOCK, Block, cut_blocks, trim_beside
 from ..types.cloud import PointCloud
 from ..types.cloud_part import CloudPart
-from ..types.laser import Axis
 from ..types.profile import Profile
 from ..types.rig import Rig
 from ..types.trajectory import Trajectory
@@ -72,8 +71,7 @@ def build_cloud(
     )
 
     def make(sizes: Mapping[int, int]) -> CloudResult:
-        axis = rig.lasers[extracted.laser].axis
-        job = _Job(project, moved.digest, rig, axis, tuple(rules))
+        job = _Job(project, moved.digest, rig, tuple(rules))
         blocks = cut_blocks(sizes, block=block)
         result = _make_parts(job, blocks, executor or Threads(), progress)
         project.export_cloud(frames=frames or extracted.frames <= FRAME_FILES)
@@ -90,7 +88,6 @@ class _Job:
     motion: str
     """Digest of the motion stage."""
     rig: Rig
-    axis: Axis
     rules: Sequence[AbstractOutlierRule]
 
     def place(self, block: Block) -> list[CloudPart]:
@@ -100,7 +97,7 @@ class _Job:
         own = slice(sizes[0], len(profile) - sizes[-1])
         if not len(profile):
             return [CloudPart.whole(PointCloud.empty()) for _ in block.parts]
-        cloud = merge_profiles(profile, trajectory, axis=self.axis)
+        cloud = merge_profiles(profile, trajectory, axes=self.rig.axes)
         cameras = trajectory.transform(np.zeros_like(profile.points), profile.time)
         found = find_outliers(SeenCloud(cloud, cameras), self.rules)
         taken_out = np.zeros(len(cloud), np.uint8)

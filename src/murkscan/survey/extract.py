@@ -1,6 +1,6 @@
-"""Find the stripe in every frame of a recording, in chunks that can be resumed."""
+"""Find the stripes of all lasers in every frame, in chunks that can be resumed."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 
@@ -9,6 +9,7 @@ from ..capture.chunks import CHUNK, Chunk, Run, missing_runs, read_missing, read
 from ..distribute import AbstractExecutor, Threads
 from ..errors import InputError
 from ..extract import AbstractExtractor, check_stripes, require_extractor
+from ..extract.lasers import check_extractor, join_remarks
 from ..extract.overlay_choice import choose_overlays, draw_overlays, name_candidates
 from ..project import EXTRACT, ExtractResult, PartNote, Project, describe
 from ..types.arrays import ColourImage
@@ -28,7 +29,7 @@ def extract_recording(
     rig: Rig,
     extractor: AbstractExtractor,
     *,
-    laser: int = 0,
+    lasers: Sequence[int] = (),
     executor: AbstractExecutor | None = None,
     progress: Progress = silent,
 ) -> ExtractResult:
@@ -39,41 +40,59 @@ def extract_recording(
         recording: The pictures.
         rig: The rig that recorded them.
         extractor: The way to find the stripe.
-        laser: Number of the laser whose stripe is looked for.
+        lasers: Numbers of the lasers whose stripes are looked for; of all unless given.
         executor: Who does it; threads unless given. The result is the same.
         progress: Told of each part.
 
     Raises:
-        InputError: The recording is not of this rig, or the extractor, perhaps one's own, gives
-            what cannot be.
+        InputError: The recording is not of this rig, the extractor cannot tell its lasers apart,
+            or gives, perhaps one's own, what cannot be.
         FormatError: Nothing of the recording can be read.
         DeviceError: The disk is full.
     """
     require_extractor(extractor)
-    check_recording(recording, rig, laser)
+    check_recording(recording, rig, lasers)
+    chosen = rig.choose_lasers(lasers)
+    check_extractor(extractor, chosen)
     stage = project.stage(
         EXTRACT,
-        settings={"extractor": describe(extractor), "laser": laser},
+        settings={"extractor": describe(extractor), "lasers": chosen},
         inputs={"recording": recording.fingerprint(), "rig": describe(rig)},
     )
 
     def make(_: None) -> ExtractResult:
-        background = project.load_background()
-        if background is None:
-            progress("learn the recording", 0, None)
-            background = extractor.learn(recording.sample(_SAMPLES), rig, laser=laser)
-            progress("learn the recording", 1, 1)
-            project.save_background(background)
-        job = _Job(project, rig, extractor, background, laser, overlay_step(recording))
+        backgrounds = _learn(project, recording, rig, extractor, chosen, progress)
+        job = _Job(project, rig, extractor, backgrounds, overlay_step(recording))
         _extract_parts(job, recording, executor or Threads(), progress)
         return _count(job)
 
     return run_stage(project, stage, make, prepare=lambda: None, progress=progress)
 
 
-def check_recording(recording: AbstractRecording, rig: Rig, laser: int) -> None:
-    """Refuse a recording that this rig cannot have made, and a laser that it does not have."""
-    rig.laser(laser)
+def _learn(
+    project: Project,
+    recording: AbstractRecording,
+    rig: Rig,
+    extractor: AbstractExtractor,
+    lasers: tuple[int, ...],
+    progress: Progress,
+) -> dict[int, Background]:
+    """Learn the recording for each laser, from the same frames; what is there already is kept."""
+    known = {number: project.load_background(number) for number in lasers}
+    missing = [number for number, background in known.items() if background is None]
+    frames = recording.sample(_SAMPLES) if missing else ()
+    for done, number in enumerate(missing):
+        progress("learn the recording", done, len(missing) if done else None)
+        background = extractor.learn(frames, rig, laser=number)
+        project.save_background(background, number)
+        known[number] = background
+        progress("learn the recording", done + 1, len(missing))
+    return {number: background for number, background in known.items() if background is not None}
+
+
+def check_recording(recording: AbstractRecording, rig: Rig, lasers: Sequence[int] = ()) -> None:
+    """Refuse a recording that this rig cannot have made, and lasers that it does not have."""
+    rig.choose_lasers(lasers)
     if recording.size != rig.camera.size:
         raise InputError(
             f"{recording.path} has pictures of {recording.size[0]} × {recording.size[1]} px but "
@@ -104,29 +123,35 @@ class _Job:
     project: Project
     rig: Rig
     extractor: AbstractExtractor
-    background: Background
-    laser: int
+    backgrounds: Mapping[int, Background]
+    """What was learnt for each laser whose stripe is looked for."""
     overlay_step: int
 
     def find(self, chunk: Chunk) -> _Part:
         """Find the stripes of one part."""
-        given = self.extractor.extract(chunk.frames, self.rig, self.background, laser=self.laser)
-        size, laser = self.rig.camera.size, self.laser
-        stripes = check_stripes(self.extractor, given, chunk.frames, size=size, laser=laser)
+        each = [self._find_one(chunk, laser) for laser in self.backgrounds]
         found = [
-            (frame, stripe)
-            for frame, stripe in zip(chunk.frames, stripes, strict=True)
+            (frame, Stripe.concatenate(stripes))
+            for frame, *stripes in zip(chunk.frames, *each, strict=True)
             if chunk.owns(frame.index)
         ]
+        stripe = Stripe.concatenate([stripe for _, stripe in found])
         note = PartNote(
             frames=tuple(frame.index for frame, _ in found),
             times=tuple(frame.time for frame, _ in found),
             points=tuple(len(stripe) for _, stripe in found),
             skips=tuple((skip.index, skip.count, skip.reason) for skip in chunk.skips),
+            points_of=tuple(int((stripe.laser == laser).sum()) for laser in self.backgrounds),
         )
         drawings = draw_overlays(found, note, step=self.overlay_step)
-        stripe = Stripe.concatenate([stripe for _, stripe in found])
         return _Part(chunk.part, stripe, note, drawings)
+
+    def _find_one(self, chunk: Chunk, laser: int) -> list[Stripe]:
+        """Find one laser's stripe in each frame."""
+        background = self.backgrounds[laser]
+        given = self.extractor.extract(chunk.frames, self.rig, background, laser=laser)
+        size = self.rig.camera.size
+        return list(check_stripes(self.extractor, given, chunk.frames, size=size, laser=laser))
 
     def save(self, part: _Part) -> int:
         """Write one part: its overlays, its stripes, and last its note."""
@@ -188,15 +213,19 @@ def _notes(job: _Job) -> list[PartNote]:
 
 
 def _count(job: _Job) -> ExtractResult:
-    points = [number for note in _notes(job) for number in note.points]
-    skips = tuple(skip for note in _notes(job) for skip in note.skips)
+    notes, backgrounds = _notes(job), job.backgrounds
+    points = [number for note in notes for number in note.points]
+    points_of = tuple(map(sum, zip(*(note.points_of for note in notes), strict=True)))
+    skips = tuple(skip for note in notes for skip in note.skips)
+    water = (one.attenuation for one in backgrounds.values() if one.attenuation)
     return ExtractResult(
-        laser=job.laser,
+        lasers=tuple(backgrounds),
         frames=len(points),
         skipped=sum(number for _, number, _ in skips),
         frames_without_stripe=points.count(0),
         points=sum(points),
         skips=skips,
-        remarks=job.background.remarks,
-        attenuation=job.background.attenuation,
+        remarks=join_remarks({n: one.remarks for n, one in backgrounds.items()}, points_of),
+        attenuation=next(water, None),
+        points_of=points_of,
     )

@@ -9,8 +9,26 @@ import numpy as np
 
 from ..distribute import AbstractExecutor, Threads
 from ..io.mesh_files import check_mesh_suffix, file_origin, save_mesh
-from ..mesh import AbstractMesher, AbstractPaint, ByDepth, close_holes, decimate, join_tiles
-from ..project import CLOUD, MESH, MeshResult, Project, describe, find_trajectory, is_merged
+from ..mesh import (
+    AbstractMesher,
+    AbstractPaint,
+    ByDepth,
+    close_holes,
+    decimate,
+    join_sheets,
+    join_tiles,
+    split_by_laser,
+)
+from ..project import (
+    CLOUD,
+    EXTRACT,
+    MESH,
+    MeshResult,
+    Project,
+    describe,
+    find_trajectory,
+    is_merged,
+)
 from ..project.blocks import BLOCK, Block, cut_blocks, trim_beside
 from ..types.cloud import PointCloud
 from ..types.mesh import Mesh
@@ -134,7 +152,11 @@ def _make_surface(
             yield tile
 
     with closing(executor.map(job.make, blocks)) as tiles:
-        return join_tiles(tell(tiles))
+        mesh = join_tiles(tell(tiles))
+    if len(project.finished(EXTRACT).result.lasers) == 1:
+        return mesh
+    laser = np.concatenate([part.laser for part in project.iterate_cloud()])
+    return join_sheets(split_by_laser(mesh, laser))
 
 
 def _join_passes(project: Project, mesher: AbstractMesher) -> Mesh:

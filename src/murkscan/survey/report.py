@@ -124,13 +124,14 @@ def _with_advice(steps: Sequence[CalibrationStep]) -> tuple[str, ...]:
 def _summarise(project: Project, spacing: float | None) -> ScanSummary:
     scan, stages = project.load_scan(), {kind.word: project.finished(kind) for kind in STAGES[:-1]}
     frames, trajectory = project.load_placed_times(), project.load_trajectory()
-    mesh, background = project.finished(MESH).result, project.load_background()
+    lasers, mesh = project.finished(EXTRACT).result.lasers, project.finished(MESH).result
+    background = project.load_background(lasers[0])
     summary = summarise(
         tell_recording(project, scan),
         load_scan_rig(project),
         project.load_placed_parts(),
         frames=frames,
-        laser=project.finished(EXTRACT).result.laser,
+        lasers=lasers,
         trajectory=trajectory,
         cloud=project.iterate_cloud(),
         num_outliers=project.finished(CLOUD).result.outliers,

@@ -10,6 +10,7 @@ from ..capture import AbstractRecording
 from ..cloud import OUTLIER_RULES, AbstractOutlierRule
 from ..distribute import AbstractExecutor
 from ..extract import AbstractExtractor, Murk
+from ..extract.lasers import check_extractor
 from ..io.rig_toml import as_tables
 from ..mesh import AbstractMesher, GridMesh
 from ..motion import AbstractMotion
@@ -36,7 +37,7 @@ def scan(
     extractor: AbstractExtractor | None = None,
     method: AbstractTriangulation | None = None,
     mesher: AbstractMesher | None = None,
-    laser: int = 0,
+    lasers: Sequence[int] = (),
     rules: Sequence[AbstractOutlierRule] = OUTLIER_RULES,
     frames: bool = False,
     rig_file: Path | None = None,
@@ -57,7 +58,7 @@ def scan(
         extractor: The way to find the stripe; Murk unless given.
         method: The way from pixels to points; ray and sheet unless given.
         mesher: The way to make a surface; the scan's own grid unless given.
-        laser: Number of the laser in the rig whose stripe is followed.
+        lasers: Numbers of the lasers whose stripes are followed; all of the rig unless given.
         rules: The reasons to take a point out of the cloud.
         frames: Whether to write one cloud a frame for more than 500 frames, too.
         rig_file: The file of the rig, for what the report says of its calibration.
@@ -78,14 +79,15 @@ def scan(
     mesher = mesher or GridMesh()
     mesher.check_available()
     check_motion(recording, motion)
-    check_recording(recording, rig, laser)
+    check_recording(recording, rig, lasers)
+    check_extractor(extractor, rig.choose_lasers(lasers))
     settings = {"extractor": extractor, "method": method, "motion": motion, "mesher": mesher}
     project = Project(Path(out), tuple(command))
     project.check_writable()
     with project.hold():
-        begin_scan(project, recording, rig, laser=laser, settings=settings, rig_file=rig_file)
+        begin_scan(project, recording, rig, lasers=lasers, settings=settings, rig_file=rig_file)
         extract_recording(
-            project, recording, rig, extractor, laser=laser, executor=executor, progress=progress
+            project, recording, rig, extractor, lasers=lasers, executor=executor, progress=progress
         )
         triangulate_stripes(project, rig, method, executor=executor, progress=progress)
         follow_motion(project, motion)
@@ -101,7 +103,7 @@ def begin_scan(
     recording: AbstractRecording,
     rig: Rig,
     *,
-    laser: int,
+    lasers: Sequence[int] = (),
     settings: Mapping[str, object],
     rig_file: Path | None = None,
 ) -> None:
@@ -111,7 +113,7 @@ def begin_scan(
         project: The project, of a new folder or of an earlier scan.
         recording: The pictures.
         rig: The rig that recorded them.
-        laser: Number of the laser whose stripe is followed.
+        lasers: Numbers of the lasers whose stripes are followed; all of the rig unless given.
         settings: The Choice of each kind that was made.
         rig_file: The file of the rig, for what the report says of its calibration.
 
@@ -119,7 +121,7 @@ def begin_scan(
         InputError: The folder holds other things or another run is at work in it, or the recording
             is not of this rig.
     """
-    check_recording(recording, rig, laser)
+    check_recording(recording, rig, lasers)
     project.check_writable()
     chosen = {name: describe(choice) for name, choice in settings.items()}
     record = ScanRecord(
@@ -137,7 +139,7 @@ def begin_scan(
         command=tuple(project.command),
         rig_file="" if rig_file is None else str(rig_file),
         calibration=None if rig_file is None else read_calibration(rig_file),
-        settings={"laser": laser, **chosen},
+        settings={"lasers": rig.choose_lasers(lasers), **chosen},
     )
     with project.hold():
         if is_merged(project):

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ..optics.uncertainty import common_shifts
-from ..project import EXTRACT, Project, load_moving_rig
+from ..optics.seen_points import shifts_in_camera
+from ..project import Project, load_moving_rig
 from ..view import ShiftField, choose_fairly, fit_shift_field
 
 _TRACED = 3000
@@ -22,10 +22,7 @@ def trace_shift_field(project: Project) -> ShiftField | None:
         return None
     profile = project.load_profile()
     some = profile[choose_fairly(len(profile), _TRACED)]
-    laser = project.finished(EXTRACT).result.laser
-    shifts = common_shifts(some.pixels, rig, laser)
-    if rig.vehicle_from_camera is not None:
-        shifts = rig.vehicle_from_camera.rotation.T @ shifts
+    shifts = shifts_in_camera(some.pixels, some.laser, rig)
     seen = np.isfinite(shifts).all(axis=(1, 2))
     if np.count_nonzero(seen) < _FEWEST or not shifts[seen].any():
         return None

@@ -17,3 +17,5 @@ class PartNote:
     points: tuple[int, ...]
     """Stripe centres of each."""
     skips: tuple[Skipped, ...]
+    points_of: tuple[int, ...] = ()
+    """Stripe centres of each laser, in the order in which they were looked for."""

@@ -1,10 +1,11 @@
 """The whole instrument: a camera and the lasers beside it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from ..errors import InputError
 from .camera import Camera
-from .laser import Laser
+from .laser import Axis, Laser
 from .navigation import NavigationAccuracy
 from .pose import Pose
 from .rig_covariance import RigCovariance
@@ -30,6 +31,11 @@ class Rig(ShortRepr):
     covariance: RigCovariance = field(default_factory=RigCovariance)
     """How well its parameters are known; of none where no calibration says so."""
 
+    @property
+    def axes(self) -> tuple[Axis, ...]:
+        """The camera axis along which each laser sits."""
+        return tuple(laser.axis for laser in self.lasers)
+
     def laser(self, number: int) -> Laser:
         """Give a laser by its number, from 0.
 
@@ -44,3 +50,14 @@ class Rig(ShortRepr):
                 f"{number}."
             )
         return self.lasers[number]
+
+    def choose_lasers(self, numbers: Sequence[int] = ()) -> tuple[int, ...]:
+        """Give the numbers of some lasers in order, each once; of all where none is named.
+
+        Raises:
+            InputError: The rig has no laser, or not one of these.
+        """
+        chosen = sorted({*numbers}) or range(max(len(self.lasers), 1))
+        for number in chosen:
+            self.laser(number)
+        return tuple(chosen)

@@ -142,6 +142,8 @@ def _layers(cloud: PointCloud, source: Indices) -> tuple[Layer, ...]:
     ]
     if np.any(cloud.posterior < 1):
         layers.append(Layer("posterior", cloud.posterior[source].astype(float), ""))
+    if np.ptp(cloud.laser) > 0:
+        layers.append(Layer("laser", cloud.laser[source].astype(float), "", "coolwarm"))
     if np.any(cloud.sigma_common > 0):
         layers.append(Layer("sigma common", cloud.sigma_common[source] * 1e3, "mm"))
     return tuple(layers)
