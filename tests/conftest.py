@@ -38,11 +38,11 @@ def fault() -> Callable[[str], Path]:
 
 @pytest.fixture(scope="session")
 def hull(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Give a simulated recording in three parts: frames/, rig.toml, poses.csv, truth/."""
+    """Give a simulated recording in three parts, of 360 × 288: frames/, rig.toml, truth/."""
     from murkscan.survey.simulate import simulate_recording
 
-    from .scenes import hull_scene
+    from .scenes import hull_scene, smaller
 
     folder = tmp_path_factory.mktemp("hull")
-    simulate_recording(hull_scene(num_frames=130), folder)
+    simulate_recording(smaller(hull_scene(num_frames=130), 2), folder)
     return folder

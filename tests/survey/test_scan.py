@@ -170,7 +170,7 @@ def test_a_recording_without_a_stripe_gives_an_empty_cloud_and_says_so(hull, tmp
     from murkscan.io.images import write_image
 
     for i in range(5):
-        write_image(tmp_path / "dark" / f"{i}.png", np.zeros((576, 720), np.uint8))
+        write_image(tmp_path / "dark" / f"{i}.png", np.zeros((288, 360), np.uint8))
     rig = ms.load_rig(hull / "rig.toml")
     recording = ms.open_recording(tmp_path / "dark", wavelength=rig.wavelength)
     project = ms.scan(recording, rig, ms.ConstantStep(0.001, "y"), out=tmp_path / "out")
@@ -183,7 +183,7 @@ def test_a_recording_of_another_camera_is_refused(hull, tmp_path):
 
     recording, rig = _open(hull)
     other = replace(rig, camera=replace(rig.camera, size=(640, 480)))
-    with pytest.raises(ms.InputError, match="720 × 576"):
+    with pytest.raises(ms.InputError, match="360 × 288"):
         ms.scan(recording, other, MOTION, out=tmp_path / "out")
     assert not (tmp_path / "out").exists()
 
