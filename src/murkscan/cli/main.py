@@ -30,6 +30,7 @@ _COMMANDS = {
     "simulate": "Make a recording whose truth is known.",
     "turntable": "Write the pose log of an object on a turntable.",
     "plan": "Say what a rig will see in a water, before it is built.",
+    "studio": "Calibrate, scan, look and measure in the browser.",
 }
 """Each lies in the file of its name, and is imported when it is called: --help stays instant."""
 

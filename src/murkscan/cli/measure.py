@@ -17,6 +17,7 @@ from .measure_part import (
     read_plane,
 )
 from .options import Place
+from .typed import WORDS
 
 if TYPE_CHECKING:
     from ..measure import Sample
@@ -85,7 +86,7 @@ def distance(out: CloudScan, *, from_m: Place, to_m: Place, name: Name = "distan
     from ..survey.measure import measure_points
 
     ends = np.array([read_place("--from-m", from_m), read_place("--to-m", to_m)])
-    project = Project(out)
+    project = Project(out, WORDS.get())
     print_measurement(
         out, name, measure_points(project, lambda points: measure_distance(points, ends), name=name)
     )
@@ -143,7 +144,8 @@ def section(
     chosen = formats.split(",")
     if unknown := set(chosen) - {"dxf", "svg", "csv"}:
         raise InputError(f"--formats takes dxf, svg and csv, got {', '.join(sorted(unknown))}.")
-    found = measure_cut(Project(out), read_plane(point_m, normal), name=name, formats=chosen)
+    project = Project(out, WORDS.get())
+    found = measure_cut(project, read_plane(point_m, normal), name=name, formats=chosen)
     print_measurement(out, name, found, suffixes=tuple(chosen))
 
 
@@ -153,5 +155,5 @@ def _measure_part(
     from ..project import Project
     from ..survey.measure import measure_points
 
-    found = measure_points(Project(out), measure, name=name, selection=part.select())
+    found = measure_points(Project(out, WORDS.get()), measure, name=name, selection=part.select())
     print_measurement(out, name, found)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Parameter
 
 from .measure_part import MeshScan, PartFlags, print_measurement
+from .typed import WORDS
 from .words import print_table, say, tell
 
 if TYPE_CHECKING:
@@ -54,7 +55,7 @@ def deviation(
     from ..project import Project
     from ..survey.deviation import compare_scan
 
-    project = Project(out)
+    project = Project(out, WORDS.get())
     found = compare_scan(
         project,
         _load(project, reference, unit, as_given),
@@ -98,7 +99,7 @@ def dents(
     from ..project import Project
     from ..survey.deviation import search_dents
 
-    project = Project(out)
+    project = Project(out, WORDS.get())
     search = search_dents(
         project,
         None if reference is None else _load(project, reference, unit, as_given),

@@ -11,6 +11,7 @@ from .measure_part import (
     read_plane,
 )
 from .options import MaybePlace, Place
+from .typed import WORDS
 
 
 def step(
@@ -40,7 +41,8 @@ def step(
         Ball(read_place(flag, text), within_mm / 1e3)
         for flag, text in (("--first-m", first_m), ("--second-m", second_m))
     )
-    print_measurement(out, name, measure_stairs(Project(out), first, second, name=name))
+    found = measure_stairs(Project(out, WORDS.get()), first, second, name=name)
+    print_measurement(out, name, found)
 
 
 def area(out: MeshScan, *, part: PartFlags = PartFlags(), name: Name = "area") -> None:
@@ -48,7 +50,7 @@ def area(out: MeshScan, *, part: PartFlags = PartFlags(), name: Name = "area") -
     from ..project import Project
     from ..survey.measure import measure_covered
 
-    found = measure_covered(Project(out), name=name, selection=part.select())
+    found = measure_covered(Project(out, WORDS.get()), name=name, selection=part.select())
     print_measurement(out, name, found)
 
 
@@ -85,7 +87,7 @@ def volume(
     is_given, is_fitted = _are_both(point_m, normal), _are_both(base_near_m, base_within_mm)
     if is_given and is_fitted:
         raise InputError("Give the plane, or the part that it is fitted to, not both.")
-    project, chosen = Project(out), part.select()
+    project, chosen = Project(out, WORDS.get()), part.select()
     if point_m is not None and normal is not None:
         found = measure_above(project, read_plane(point_m, normal), name=name, selection=chosen)
     elif base_near_m is not None and base_within_mm is not None:

@@ -1,8 +1,11 @@
 """Progress bars on the terminal, from the first moment on."""
 
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
+
+from ..ui.progress_lines import ASK, ProgressLines
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bars
@@ -16,8 +19,12 @@ _COMPILING = "compiling loops, once on this machine: some 20 s in all"
 def progress_bars() -> Iterator["Progress"]:
     """Show a bar for each stage that tells how far it is, and what goes on before the first.
 
-    What is loaded within it is loaded while something is on the screen.
+    What is loaded within it is loaded while something is on the screen. A program that runs the
+    command may ask for lines instead.
     """
+    if os.environ.get(ASK) == "lines":
+        yield ProgressLines()
+        return
     from rich.console import Console
     from rich.progress import (
         BarColumn,

@@ -16,7 +16,16 @@ export const numbersOf = (place) => place.map((x) => Number(x.toFixed(DIGITS))).
 
 const quoted = (text) => (/^[\w./:@+-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`);
 
+// A page that shows this one, such as the studio's, may take the measure itself: it is told the command.
+const isShownWithin = window.parent !== window;
+
 export function copyButton(text) {
+  if (isShownWithin) {
+    return make("button", {
+      type: "button", className: "copy", textContent: "Take this measure", title: text,
+      onclick: () => window.parent.postMessage({ murkscan: text }, "*"),
+    });
+  }
   const button = make("button", {
     type: "button", className: "copy", textContent: "Copy as command", title: text,
     onclick: async () => {

@@ -1,0 +1,91 @@
+"""What lies in the folder: rigs, scans, recordings, folders of photographs."""
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from .sandbox import Sandbox
+
+_DEEPEST = 4
+"""Folders below the studio's that are looked into."""
+_MOST = 5000
+"""Entries that are looked at, so that a home folder or a network disk cannot hold the page up."""
+_VIDEOS = {".mkv", ".mp4", ".mov", ".avi", ".ts", ".mts", ".m4v", ".h264", ".mcap", ".bag", ".sdp"}
+_PHOTOS = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".pgm"}
+_LOGS = {".csv", ".txt", ".tum", ".tlog", ".nmea", ".mcap", ".bag"}
+_MESHES = {".stl", ".obj", ".ply", ".glb"}
+
+
+@dataclass
+class Found:
+    """Names within the folder, each kind in order of its names."""
+
+    rigs: list[str] = field(default_factory=list)
+    scans: list[str] = field(default_factory=list)
+    """Folders with a scan, finished or not."""
+    recordings: list[str] = field(default_factory=list)
+    """Videos, and folders of pictures."""
+    photos: list[str] = field(default_factory=list)
+    """Folders of pictures, and videos."""
+    logs: list[str] = field(default_factory=list)
+    meshes: list[str] = field(default_factory=list)
+    is_cut: bool = False
+    """Whether there was more than is looked at."""
+
+
+def look_around(sandbox: Sandbox) -> Found:
+    """List what lies in the folder, as far as is quickly seen."""
+    found, seen = Found(), 0
+    for folder, folders, files in _walk(sandbox.root):
+        seen += len(files) + 1
+        if seen > _MOST:
+            found.is_cut = True
+            break
+        if "scan.json" in files:
+            found.scans.append(sandbox.name(folder))
+            folders.clear()
+            continue
+        _sort_in(found, sandbox, folder, files)
+    for names in (found.rigs, found.scans, found.recordings, found.photos, found.logs):
+        names.sort()
+    return found
+
+
+def _walk(root: Path) -> Iterator[tuple[Path, list[str], list[str]]]:
+    for folder, folders, files in os.walk(root):
+        deep = len(Path(folder).relative_to(root).parts)
+        folders[:] = sorted(
+            name for name in folders if not name.startswith(".") and deep < _DEEPEST
+        )
+        yield Path(folder), folders, [name for name in files if not name.startswith(".")]
+
+
+def _sort_in(found: Found, sandbox: Sandbox, folder: Path, files: list[str]) -> None:
+    suffixes = {Path(name).suffix.lower() for name in files}
+    # What a calibration drew is no photograph to calibrate on.
+    is_drawn = any(name.endswith(".found.jpg") for name in files)
+    if suffixes & _PHOTOS and not is_drawn and folder != sandbox.root:
+        found.recordings.append(sandbox.name(folder))
+        found.photos.append(sandbox.name(folder))
+    for name in files:
+        suffix, path = Path(name).suffix.lower(), folder / name
+        if suffix == ".toml" and _is_rig(path):
+            found.rigs.append(sandbox.name(path))
+        if suffix in _VIDEOS:
+            found.recordings.append(sandbox.name(path))
+            found.photos.append(sandbox.name(path))
+        if suffix in _LOGS and name != "times.csv":
+            found.logs.append(sandbox.name(path))
+        if suffix in _MESHES:
+            found.meshes.append(sandbox.name(path))
+
+
+def _is_rig(path: Path) -> bool:
+    """Tell whether a TOML file has the tables of a rig; a scene has a rig's inside."""
+    try:
+        text = path.read_text("utf-8-sig", errors="replace")[:200_000]
+    except OSError:
+        return False
+    lines = [line.strip() for line in text.splitlines()]
+    return any(line in ("[camera]", "[[laser]]", "[calibration]") for line in lines)

@@ -1,0 +1,61 @@
+"""The studio's server: bound to this machine, one a folder, ended by Ctrl-C."""
+
+import secrets
+import socket
+from collections.abc import Callable
+from pathlib import Path
+
+import uvicorn
+
+from ..errors import DeviceError
+from ..project.lock import hold
+from .app import make_app
+from .jobs import Jobs
+from .sandbox import Sandbox
+
+_TOKEN_BYTES = 24
+
+
+def serve(
+    folder: Path, *, host: str = "127.0.0.1", port: int = 0, tell: Callable[[str], None] = print
+) -> None:
+    """Show a folder until Ctrl-C.
+
+    Args:
+        folder: What to show; made where it is missing.
+        host: Address of this machine at which to listen.
+        port: Port; 0 takes a free one.
+        tell: Told the address to open, which carries the token, and at the end what goes on.
+
+    Raises:
+        InputError: Another studio shows this folder, or it cannot be one.
+        DeviceError: The port is taken, or the folder cannot be written.
+    """
+    sandbox = Sandbox.open(folder)
+    token = secrets.token_urlsafe(_TOKEN_BYTES)
+    with hold(sandbox.own(), ("studio", str(folder))), _listen(host, port) as listening:
+        place = listening.getsockname()[1]
+        tell(f"http://{host}:{place}/{token}/")
+        app = make_app(folder, token, hosts=(host,))
+        config = uvicorn.Config(
+            app, log_level="warning", server_header=False, timeout_graceful_shutdown=2,
+            access_log=False, h11_max_incomplete_event_size=1 << 15,
+        )  # fmt: skip
+        uvicorn.Server(config).run(sockets=[listening])
+    running = [job["text"] for job in Jobs(sandbox).newest() if job["state"] == "running"]
+    for text in running:
+        tell(f"`{text}` goes on without the studio; begin the studio again to see or stop it.")
+
+
+def _listen(host: str, port: int) -> socket.socket:
+    listening = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET)
+    listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        listening.bind((host, port))
+    except OSError as error:
+        listening.close()
+        raise DeviceError(
+            f"Cannot listen at {host}, port {port}: {error.strerror}. Leave --port out, and a free "
+            "one is taken."
+        ) from error
+    return listening

@@ -1,0 +1,125 @@
+// A command as a form: what is filled in is written below it as it would be typed.
+
+import { order, refresh, studio } from "./ask.js";
+import { button, make, note } from "./dom.js";
+
+// fields: { key, label, kind: number | text | select | switch, value, options, unit, hint, more }
+export function commandForm({ page, command, fields, run = "Begin", values: fixed = {}, onchange = () => {} }) {
+  const nameOf = () => (typeof command === "function" ? command(read()) : command);
+  const inputs = new Map(fields.map((field) => [field.key, input(field)]));
+  const said = make("code", { className: "typed", textContent: " " });
+  const fault = note("", "warning");
+  fault.hidden = true;
+  const start = button(run, begin, { className: "main" });
+  const plain = fields.filter((field) => !field.more).map((field) => row(field, inputs.get(field.key)));
+  const more = fields.filter((field) => field.more).map((field) => row(field, inputs.get(field.key)));
+  const element = make("form", { className: "form", onsubmit: (event) => { event.preventDefault(); begin(); } },
+    make("div", { className: "fields" }, plain),
+    more.length ? make("details", {}, make("summary", { textContent: "More" }), make("div", { className: "fields" }, more)) : null,
+    make("div", { className: "typing" }, said, start), fault);
+  element.addEventListener("input", write);
+
+  function read() {
+    const values = { ...fixed };
+    for (const [key, element] of inputs) {
+      const field = fields.find((one) => one.key === key);
+      if (field.skip?.(values)) continue;
+      values[key] = element.type === "checkbox" ? element.checked : element.value.trim();
+    }
+    return values;
+  }
+
+  function asked() {
+    const values = read();
+    for (const field of fields) if (field.local) delete values[field.key];
+    return { command: nameOf(), values: Object.assign(values, element.also?.(read()) ?? {}), page };
+  }
+
+  let last = 0;
+  async function write() {
+    onchange(read());
+    const mine = ++last;
+    await new Promise((resolve) => setTimeout(resolve, 150));
+    if (mine !== last) return;
+    try {
+      const { text } = await order("api/command", asked());
+      if (mine === last) tell(text, "");
+    } catch (error) {
+      if (mine === last) tell("", error.message);
+    }
+  }
+
+  async function begin() {
+    start.disabled = true;
+    try {
+      tell((await order("api/jobs", asked())).text, "");
+      await refresh();
+    } catch (error) {
+      tell(said.textContent, error.message);
+    }
+    start.disabled = false;
+  }
+
+  function tell(text, sentence) {
+    said.textContent = text || " ";
+    fault.textContent = sentence;
+    fault.hidden = !sentence;
+  }
+
+  element.write = write;
+  element.read = read;
+  element.set = (key, value) => { inputs.get(key).value = value; write(); };
+  element.input = (key) => inputs.get(key);
+  queueMicrotask(write);
+  return element;
+}
+
+function input({ key, kind = "text", value = "", options = [], step = "any", min, max, placeholder = "" }) {
+  if (kind === "select") return fill(make("select", { name: key }), options, value);
+  if (kind === "switch") return make("input", { type: "checkbox", name: key, checked: Boolean(value) });
+  const more = kind === "number" ? { type: "number", step, inputMode: "decimal" } : { type: "text" };
+  const element = make("input", { name: key, value, placeholder, autocomplete: "off", ...more });
+  if (min !== undefined) element.min = min;
+  if (max !== undefined) element.max = max;
+  return element;
+}
+
+export function fill(select, options, value) {
+  const pairs = options.map((option) => (Array.isArray(option) ? option : [option, option]));
+  const before = value ?? select.value;
+  select.replaceChildren(...pairs.map(([key, text]) => make("option", { value: key, textContent: text })));
+  if (pairs.some(([key]) => key === before)) select.value = before;
+  return select;
+}
+
+function row({ label, unit, hint }, element) {
+  return make("label", { className: element.type === "checkbox" ? "check" : "" },
+    make("span", { textContent: unit ? `${label} [${unit}]` : label }), element,
+    hint ? make("small", { textContent: hint }) : null);
+}
+
+// A button that brings files into the folder; each answer is one sentence.
+export function uploader({ label, accept, multiple = true, nameOf, done = () => {} }) {
+  const said = make("small", {});
+  const chooser = make("input", { type: "file", accept, multiple, hidden: true, onchange: take });
+  async function take() {
+    const chosen = [...chooser.files];
+    let count = 0, fault = "";
+    for (const file of chosen) {
+      said.textContent = `${count + 1} of ${chosen.length}: ${file.name} …`;
+      try {
+        const path = nameOf(file).split("/").map(encodeURIComponent).join("/");
+        const answer = await fetch(`api/upload/${path}`, { method: "PUT", body: file });
+        if (!answer.ok) throw new Error(await answer.text());
+        count += 1;
+      } catch (error) {
+        fault = error.message;
+      }
+    }
+    said.textContent = `${count} of ${chosen.length} brought. ${fault}`;
+    chooser.value = "";
+    await refresh();
+    done(studio.state);
+  }
+  return make("div", { className: "bring" }, chooser, button(label, () => chooser.click()), said);
+}

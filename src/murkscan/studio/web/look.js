@@ -1,0 +1,168 @@
+// A scan: its model, its measures with their intervals, its report, its files; and a new scan.
+
+import { addressOf, ask, listen, order, question, refresh } from "./ask.js";
+import { button, keep, make, note, table } from "./dom.js";
+import { commandForm, fill } from "./form.js";
+import { measureForms } from "./measures.js";
+
+export function lookPage(page, [named]) {
+  const chosen = make("select", { "aria-label": "Scan" });
+  const none = note("There is no scan in this folder yet: scan a recording below.");
+  const model = make("div", {});
+  const measured = make("section", { className: "card" });
+  const forms = make("section", { className: "card" });
+  const stages = make("div", {});
+  const fresh = scanForm();
+  page.append(make("h1", { textContent: "Look and measure" }),
+    make("div", { className: "toolbar" }, make("label", {}, make("span", { textContent: "Scan" }), chosen)),
+    none, model, measured, forms, stages, fresh.element);
+  chosen.onchange = () => { location.hash = `#look/${encodeURIComponent(chosen.value)}`; };
+
+  async function load() {
+    const name = chosen.value;
+    for (const part of [model, measured, forms, stages]) part.hidden = !name;
+    if (!name) return;
+    try {
+      const scan = await ask(question("api/scan", { name }));
+      keep(model, [name, scan.page, scan.picture], () => modelOf(scan));
+      keep(measured, [scan.measures, scan.unstated], () => measuresOf(scan));
+      keep(forms, name, () => [make("h2", { textContent: "Measure" }), measureForms(name)]);
+      keep(stages, [scan.stages, scan.files, scan.report], () => stagesOf(scan));
+    } catch (error) {
+      keep(model, error.message, () => note(error.message, "warning"));
+    }
+  }
+
+  function heard({ data, source }) {
+    if (typeof data?.murkscan !== "string" || source !== model.querySelector("iframe")?.contentWindow) return;
+    const words = data.murkscan.match(/^murkscan measure \S+ distance --from-m (\S+) --to-m (\S+)$/);
+    const cut = data.murkscan.match(/^murkscan measure \S+ section --point-m (\S+) --normal (\S+)$/);
+    if (words) measure("distance", { "from-m": words[1], "to-m": words[2] });
+    if (cut) measure("section", { "point-m": cut[1], normal: cut[2] });
+  }
+  async function measure(kind, values) {
+    const count = 1 + page.querySelectorAll(".measure").length;
+    try {
+      await order("api/jobs", { command: `measure ${kind}`, page: "look", values: { out: chosen.value, name: `${kind}-${count}`, ...values } });
+      await refresh();
+      measured.scrollIntoView({ behavior: "smooth", block: "nearest" });
+    } catch (error) {
+      measured.prepend(note(error.message, "warning"));
+    }
+  }
+  addEventListener("message", heard);
+
+  let last = "";
+  const stop = listen((state) => {
+    const { scans } = state.found;
+    none.hidden = scans.length > 0;
+    fresh.sync(state);
+    const key = JSON.stringify([scans, state.jobs.map((job) => [job.name, job.state, job.progress?.[0]])]);
+    if (key === last) return;
+    last = key;
+    fill(chosen, scans, last ? (named ?? chosen.value) : named);
+    load();
+  });
+  return () => { stop(); removeEventListener("message", heard); };
+}
+
+function modelOf(scan) {
+  if (!scan.page) return scan.picture ? make("img", { src: addressOf(scan.picture), alt: "The scanned surface" }) : note("There is no model yet: it comes with the stage view.");
+  const frame = make("iframe", { className: "viewer", src: addressOf(scan.page), title: "The model, to turn, cut and measure" });
+  return [frame, make("div", { className: "row" },
+    make("a", { className: "button", href: addressOf(scan.page), target: "_blank", textContent: "Model on its own" }),
+    scan.report ? make("a", { className: "button", href: addressOf(scan.report), target: "_blank", textContent: "Report" }) : null,
+    make("small", { textContent: "Measure two places, or cut, in the model: “Take this measure” there puts it below." }))];
+}
+
+const UNITS = { m: ["mm", 1e3], m2: ["cm²", 1e4], m3: ["cm³", 1e6], rad: ["°", 180 / Math.PI] };
+
+function measuresOf({ measures, unstated }) {
+  return [make("h2", { textContent: "Measures" }),
+    measures.length ? null : note("None yet."),
+    ...measures.map((one) => make("div", { className: "measure" },
+      make("h3", { textContent: `${one.name}: ${one.kind}` }),
+      table([], one.rows.map(([key, value, half, isUnknown]) => rowOf(key, value, half, isUnknown))),
+      one.command ? make("code", { textContent: one.command }) : null,
+      one.files.length ? make("div", { className: "row" }, one.files.map(linkOf)) : null)),
+    measures.length ? make("small", { textContent: "In 95 of 100 scans the truth lies within value ± what follows it." }) : null,
+    ...unstated.map((text) => note(text, "warning"))];
+}
+
+function rowOf(key, value, half, isUnknown) {
+  const [, name, unit] = key.match(/^(.*?)(?:_(m3|m2|m|rad))?$/);
+  const isPlace = ["x", "y", "z"].includes(name);
+  const [word, scale] = isPlace ? ["m", 1] : UNITS[unit] ?? [unit ?? "", 1];
+  const digits = half > 0 ? Math.min(Math.max(1 - Math.floor(Math.log10(half * scale)), 0), 6) : 4;
+  const doubt = half * scale < 5e-7 ? "" : ` ± ${(half * scale).toFixed(digits)}`;
+  return [name.replaceAll("_", " "), `${(value * scale).toFixed(digits)}${doubt} ${word}${isUnknown ? " (points’ noise only)" : ""}`];
+}
+
+const linkOf = (name) => make("a", { href: addressOf(name), target: "_blank", textContent: name.split("/").at(-1) });
+const size = (bytes) => (bytes > 1e6 ? `${(bytes / 1e6).toFixed(1)} MB` : `${Math.ceil(bytes / 1e3)} kB`);
+
+function stagesOf({ name, stages, files, report }) {
+  const export_ = commandForm({
+    page: "look", command: "cloud", run: "Export the cloud", values: { out: name },
+    fields: [{ key: "export", label: "File: .laz, .copc.laz, .las, .e57, .ply, .xyz", value: `${name.split("/").at(-1)}.laz` }],
+  });
+  const view = commandForm({
+    page: "look", command: "view", run: "Make the page anew", values: { out: name },
+    fields: [{ key: "title", label: "Title on the page", placeholder: "client, place, date" }],
+  });
+  const wrote = commandForm({
+    page: "look", command: "report", run: "Write the report anew", values: { out: name },
+    fields: [{ key: "spacing-mm", label: "Wanted spacing", unit: "mm", kind: "number" }],
+  });
+  return make("div", { className: "cards" },
+    make("section", { className: "card" }, make("h2", { textContent: "What was made" }),
+      make("ul", { className: "stages" }, stages.map((one) => make("li", {}, make("b", { textContent: one.stage }),
+        one.fault ? make("span", { className: "sentence", textContent: one.fault })
+          : make("span", { className: one.made ? "" : "missing" }, one.made || "not yet", one.quality.map((text) => make("small", { className: "block", textContent: ` ${text}.` })))))),
+      report ? make("div", { className: "row" }, make("a", { className: "button", href: addressOf(report), target: "_blank", textContent: "Open the report" })) : null),
+    make("section", { className: "card" }, make("h2", { textContent: "Report, page and exports" }), wrote, view, export_),
+    make("section", { className: "card" }, make("h2", { textContent: "Files" }),
+      make("ul", { className: "files" }, files.map(([path, bytes]) => make("li", {},
+        make("a", { href: addressOf(path), target: "_blank", textContent: path.slice(name.length + 1) }), ` ${size(bytes)}`)))));
+}
+
+// A new scan of a recording.
+function scanForm() {
+  const form = commandForm({
+    page: "look", command: "scan", run: "Scan",
+    fields: [
+      { key: "recording", label: "Recording", kind: "select" },
+      { key: "rig", label: "Rig", kind: "select" },
+      { key: "how", label: "How the camera moved", kind: "select", local: true, options: [["speed-mm-s", "at a speed [mm/s]"], ["step-mm", "by a step a picture [mm]"], ["poses", "by a log of poses"], ["navigation", "by the vehicle’s instruments"]] },
+      { key: "number", label: "Speed or step", kind: "number", local: true },
+      { key: "log", label: "Log", kind: "select", local: true },
+      { key: "out", label: "Folder for the scan", value: "scan" },
+      { key: "fps", label: "Pictures a second", kind: "number", hint: "of a folder without times.csv", more: true },
+      { key: "extractor", label: "How the stripe is found", kind: "select", options: [["", "murk"], "gray-gravity", "gaussian", "steger", "threshold-skeleton"], more: true },
+      { key: "mesher", label: "How the surface is made", kind: "select", options: [["", "grid"], "poisson"], more: true },
+      { key: "start-time", label: "When the video began", hint: "seconds or ISO 8601, by the log’s clock", more: true },
+      { key: "time-offset-s", label: "Added to recording times", unit: "s", kind: "number", more: true },
+    ],
+    onchange: ({ how }) => show(how),
+  });
+  form.also = ({ how, number, log }) => ({ [how]: how === "poses" || how === "navigation" ? log : number });
+  function show(how) {
+    const byLog = how === "poses" || how === "navigation";
+    form.input("number").closest("label").hidden = byLog;
+    form.input("log").closest("label").hidden = !byLog;
+  }
+  show("speed-mm-s");
+  let last = "";
+  return {
+    element: make("section", { className: "card" }, make("h2", { textContent: "A new scan" }), form),
+    sync(state) {
+      const { recordings, rigs, logs } = state.found;
+      if (JSON.stringify([recordings, rigs, logs]) === last) return;
+      last = JSON.stringify([recordings, rigs, logs]);
+      fill(form.input("recording"), recordings);
+      fill(form.input("rig"), rigs);
+      fill(form.input("log"), logs);
+      form.write();
+    },
+  };
+}

@@ -1,0 +1,38 @@
+// The frame: pages by the part of the address behind #, what runs, day and night.
+
+import { watch } from "./ask.js";
+import { make } from "./dom.js";
+import { showJobs } from "./job.js";
+import { lookPage } from "./look.js";
+import { planPage } from "./plan.js";
+import { rigPage } from "./rig.js";
+import { startTheme } from "./theme.js";
+
+const PAGES = {
+  rig: ["Rig", rigPage],
+  look: ["Look", lookPage],
+  plan: ["Plan", planPage],
+};
+let leave = () => {};
+
+const tabs = Object.entries(PAGES).map(([name, [title]]) => make("a", { href: `#${name}`, textContent: title, data: { name } }));
+document.getElementById("tabs").append(...tabs);
+
+function show() {
+  const [name, ...rest] = location.hash.slice(1).split("/").map(decodeURIComponent);
+  const [title, page] = PAGES[name] ?? PAGES.rig;
+  for (const tab of tabs) tab.toggleAttribute("aria-current", tab.dataset.name === (PAGES[name] ? name : "rig"));
+  document.title = `${title} – murkscan studio`;
+  leave();
+  const main = document.getElementById("page");
+  main.replaceChildren();
+  leave = page(main, rest) ?? (() => {});
+  main.scrollTop = 0;
+}
+
+addEventListener("hashchange", show);
+startTheme(document.getElementById("theme"));
+showJobs(document.getElementById("job"));
+show();
+watch();
+document.documentElement.dataset.ready = "yes";

@@ -1,0 +1,119 @@
+"""The studio as its users meet it: in a browser, by clicks and keys alone."""
+
+import re
+import subprocess
+import sys
+from contextlib import contextmanager
+
+import pytest
+
+pytest.importorskip("uvicorn", reason="the extra [studio] is not installed")
+
+from murkscan.survey.simulate import simulate_recording
+
+from ..scenes import hull_scene, smaller
+from ..view.browser import chromium
+
+PATIENCE = 60_000
+"""Milliseconds in which a small scan ends on a busy machine."""
+
+
+@contextmanager
+def serving(folder, port="0"):
+    """Run the command, and give the address that it says and the process."""
+    words = [sys.executable, "-m", "murkscan", "studio", str(folder), "--no-browser"]
+    with subprocess.Popen([*words, "--port", port], stdout=subprocess.PIPE, text=True) as process:
+        try:
+            yield re.search(r"http://\S+", process.stdout.readline())[0], process
+        finally:
+            process.kill()
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("studio")
+    simulate_recording(smaller(hull_scene(24)), folder / "dive")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def opened(folder):
+    """A page that is open, and a list that gets every error and every request that leaves it."""
+    with chromium() as browser, serving(folder) as (address, process):
+        page = browser.new_page(viewport={"width": 1280, "height": 800})
+        faults = []
+        page.on("console", lambda said: said.type == "error" and faults.append(said.text))
+        page.on("pageerror", lambda error: faults.append(str(error)))
+        page.on("request", lambda asked: at_home(asked.url, address) or faults.append(asked.url))
+        page.goto(address)
+        page.wait_for_selector("html[data-ready]")
+        yield page, faults, process
+
+
+def at_home(address, home):
+    return address.startswith((home, "data:", "blob:"))
+
+
+def test_from_a_recording_to_a_measure_by_clicks_alone(opened):
+    page, faults, _ = opened
+    page.get_by_role("link", name="Look", exact=True).click()
+    page.get_by_label("Speed or step").fill("100")
+    page.get_by_label("Folder for the scan").fill("hull")
+    typed = "murkscan scan dive/frames --rig dive/rig.toml --out hull --speed-mm-s 100"
+    page.get_by_text(typed).wait_for()
+    page.get_by_role("button", name="Scan", exact=True).click()
+    page.locator("#job .state.done").wait_for(timeout=PATIENCE)
+    model = page.frame_locator("iframe.viewer")
+    model.locator("html[data-ready]").wait_for(timeout=PATIENCE)
+    page.get_by_role("button", name="Plane", exact=True).click()
+    page.get_by_role("button", name="Measure", exact=True).click()
+    measure = page.locator(".measure", has_text="murkscan measure hull plane --name plane")
+    measure.wait_for(timeout=PATIENCE)
+    assert "±" in measure.inner_text()
+    assert faults == []
+
+
+def test_what_is_measured_on_the_model_is_taken_by_the_command_for_it(opened):
+    page, faults, _ = opened
+    frame = next(one for one in page.frames if "view/index.html" in one.url)
+    frame.evaluate("murkscan.measure(20, 800)")
+    frame.get_by_role("button", name="Take this measure").click()
+    measure = page.locator(".measure", has_text="murkscan measure hull distance --from-m")
+    measure.wait_for(timeout=PATIENCE)
+    assert "mm" in measure.inner_text()
+    assert faults == []
+
+
+def test_a_plan_follows_its_sliders(opened):
+    page, faults, _ = opened
+    page.get_by_role("link", name="Plan", exact=True).click()
+    reach = page.locator(".facts b").first
+    reach.wait_for(timeout=PATIENCE)
+    clear = float(reach.inner_text().split()[2])
+    page.get_by_role("spinbutton", name="A diver sees").fill("1")
+    page.wait_for_function(
+        f"() => parseFloat(document.querySelector('.facts b').textContent.split(' ')[2]) < {clear}",
+        timeout=PATIENCE,
+    )
+    page.get_by_text("--visibility-m 1").wait_for()
+    assert faults == []
+
+
+@pytest.mark.parametrize("name", ["rig", "look", "plan"])
+def test_pages_fit_a_phone_and_show_names_as_they_are(opened, folder, name):
+    page, faults, _ = opened
+    hostile = "<img src=x onerror=window.broken=1>.toml"
+    (folder / hostile).write_text((folder / "dive/rig.toml").read_text())
+    page.set_viewport_size({"width": 390, "height": 844})
+    page.goto(f"{page.url.split('#')[0]}#{name}")
+    page.wait_for_function(f"() => document.body.innerHTML.includes({hostile[1:8]!r})")
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    assert page.evaluate("window.broken") is None
+    assert faults == []
+
+
+def test_a_studio_that_is_gone_is_told_of(opened):
+    page, _, process = opened
+    process.kill()
+    page.locator("#gone").wait_for(timeout=PATIENCE)
+    assert "does not answer" in page.locator("#gone").inner_text()

@@ -1,0 +1,116 @@
+"""What pages are told: commands as they are typed, rigs, plans, and jobs to their end."""
+
+import time
+
+import numpy as np
+import pytest
+from cyclopts import App
+
+from murkscan import load_rig
+from murkscan.cli.main import app
+from murkscan.cli.progress import progress_bars
+from murkscan.optics.medium import Medium
+from murkscan.plan import Conditions, attenuation_from_visibility, forecast
+from murkscan.studio.commands import FORMS
+from murkscan.ui.progress_lines import ASK, read_progress
+
+from .conftest import RIG
+
+
+def flags_of(name):
+    """Give the flags of a command, by the command line itself."""
+    place: App = app
+    for word in name.split():
+        place = place[word]
+    collection = place.assemble_argument_collection()
+    return {flag.removeprefix("--") for argument in collection for flag in argument.names}
+
+
+@pytest.mark.parametrize("name", sorted(FORMS))
+def test_each_flag_of_the_studio_is_one_of_its_command(name):
+    assert set(FORMS[name].flags) <= flags_of(name)
+
+
+def run_to_its_end(ask, command, values):
+    started = ask.post("api/jobs", json={"command": command, "values": values, "page": "test"})
+    assert started.status_code == 200, started.text
+    for _ in range(600):
+        job = ask.get("api/folder").json()["jobs"][0]
+        if job["state"] != "running":
+            return job
+        time.sleep(0.1)
+    raise AssertionError("it never ended")
+
+
+def test_a_job_is_the_command_it_says_and_one_runs_at_a_time(folder, ask):
+    asked = {"out": "a board.pdf", "board": "9x6", "square-mm": 25}
+    started = ask.post("api/jobs", json={"command": "calibrate board", "values": asked})
+    text = started.json()["text"]
+    assert text == "murkscan calibrate board 'a board.pdf' --board 9x6 --square-mm 25"
+    second = ask.post("api/jobs", json={"command": "calibrate board", "values": asked})
+    assert second.status_code == 400
+    assert f"One thing at a time: `{text}` is at work." in second.text
+    name = started.json()["name"]
+    while ask.get("api/folder").json()["jobs"][0]["state"] == "running":
+        time.sleep(0.1)
+    assert (folder / "a board.pdf").read_bytes().startswith(b"%PDF")
+    assert ask.post(f"api/jobs/{name}/stop", json={}).json()["state"] == "done"
+
+
+def test_what_a_command_refuses_is_its_own_sentence(ask):
+    job = run_to_its_end(ask, "calibrate board", {"out": "b.pdf", "board": "9", "square-mm": 25})
+    assert job["state"] == "refused"
+    assert job["sentence"].startswith("--board '9' is not a board")
+
+
+def test_a_rig_is_told_part_by_part(ask):
+    rig = ask.get("api/rig", params={"name": "rig.toml"}).json()
+    assert [step["step"] for step in rig["steps"]] == ["camera", "port", "laser 0", "mount"]
+    assert [step["is_there"] for step in rig["steps"]] == [True, False, True, False]
+    assert not any(step["is_calibrated"] for step in rig["steps"])
+
+
+def test_a_rig_that_is_none_is_a_sentence(folder, ask):
+    (folder / "bad.toml").write_text(RIG.replace("[[laser]]", "[[lasers]]"))
+    assert "lasers is unknown" in ask.get("api/rig", params={"name": "bad.toml"}).json()["fault"]
+    asked = {"rig": "bad.toml", "visibility-m": 3}
+    assert ask.get("api/plan", params=asked).status_code == 400
+
+
+def test_a_plan_is_by_the_plan_s_own_formulas(folder, ask):
+    told = ask.get("api/plan", params={"rig": "rig.toml", "visibility-m": 3, "power-mw": 30}).json()
+    medium = Medium(attenuation_from_visibility(3.0))
+    whole = forecast(load_rig(folder / "rig.toml"), Conditions(medium))
+    # Between two of the page's distances, which are 13 % apart.
+    np.testing.assert_allclose(told["reach_m"], whole.reach, rtol=0.13)
+    noise = np.array(told["sigma_mm"]["noise"], float)
+    known = np.interp(told["depths_m"], whole.depths, 1e3 * whole.median(whole.sigma_along))
+    both = np.isfinite(noise) & np.isfinite(known)
+    assert both.sum() > 5
+    # Five scan lines for fifteen.
+    np.testing.assert_allclose(noise[both], known[both], rtol=0.3)
+
+
+@pytest.mark.parametrize("water", [{}, {"visibility-m": "far"}, {"visibility-m": "-1"}])
+def test_a_plan_without_its_water_is_a_sentence(ask, water):
+    answer = ask.get("api/plan", params={"rig": "rig.toml", **water})
+    assert answer.status_code == 400
+    assert answer.text.endswith((".", "'far'."))
+
+
+def test_a_board_has_the_size_it_says():
+    from murkscan.calibrate import Chessboard
+    from murkscan.calibrate.board.printed import print_board
+
+    drawn = print_board(Chessboard(9, 6, 25e-3), kind="svg").decode()
+    # Points of 1/72 inch: 12 squares wide.
+    assert f'width="{12 * 25 / 25.4 * 72:.6f}pt"'[:14] in drawn
+
+
+def test_a_command_tells_a_program_how_far_it_is_in_lines(capfd, monkeypatch):
+    monkeypatch.setenv(ASK, "lines")
+    with progress_bars() as progress:
+        progress("extract", 3, 10)
+    line = capfd.readouterr().err
+    assert read_progress(line) == ("extract", 3, 10)
+    assert read_progress("murkscan: no") is None
