@@ -24,7 +24,7 @@ def made(folder, shift):
     """Make a project of a cylinder, in a world that counts from elsewhere."""
     profile, trajectory = scan(cylinder, spacing=4e-3, noise=1e-5)
     trajectory = trajectory.carry(Pose(np.eye(3), shift))
-    cloud = merge_profiles(profile, trajectory, axis="x")
+    cloud = merge_profiles(profile, trajectory, axes=("x",))
     project = Project(folder)
     project.save_scan(SCAN)
     poses = MotionResult(2)
