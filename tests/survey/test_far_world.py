@@ -7,8 +7,8 @@ from murkscan.cloud import merge_profiles
 from murkscan.io.cloud_files import load_cloud_file
 from murkscan.io.mesh_files import load_mesh
 from murkscan.mesh import GridMesh
-from murkscan.project import CLOUD, MOTION, Project
-from murkscan.project.results import CloudResult, MotionResult
+from murkscan.project import CLOUD, EXTRACT, MOTION, Project
+from murkscan.project.results import CloudResult, ExtractResult, MotionResult
 from murkscan.survey.export import export_cloud
 from murkscan.survey.mesh import build_mesh
 from murkscan.types.pose import Pose
@@ -27,6 +27,7 @@ def made(folder, shift):
     cloud = merge_profiles(profile, trajectory, axes=("x",))
     project = Project(folder)
     project.save_scan(SCAN)
+    finish(project, EXTRACT, ExtractResult((0,), 30, 0, 0, len(profile)))
     poses = MotionResult(2)
     finish(project, MOTION, poses, make=lambda: project.save_trajectory(trajectory))
     finish(project, CLOUD, CloudResult(len(cloud), 0), make=lambda: save_cloud(project, cloud))

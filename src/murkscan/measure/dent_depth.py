@@ -107,7 +107,7 @@ class _Floor:
             inside = inside[scan.clearance[scan.frame.cells_of(scan.located[inside])] > clear]
         design = _terms((scan.located[inside, :2] - place) / reach, order)
         # By the normal equations, a hundred times sooner than from thousands of points: no term is
-        # larger than one, so that squaring their condition leaves ten digits.
+        # larger than one, and their condition, some 46, may well be squared.
         normal, right = design.T @ design, design.T @ scan.deviation.values[inside]
         return cls(place, reach, order, inside, design, np.linalg.lstsq(normal, right)[0])
 
