@@ -22,6 +22,7 @@ _COMMANDS = {
     "motion": "Find where the camera was in each frame.",
     "cloud": "Merge the profiles into one cloud of points.",
     "merge": "Lay several scans of one object on another, as one cloud.",
+    "georeference": "Lay a scan on control points, for exports in a coordinate system.",
     "mesh": "Make a surface from the cloud.",
     "measure": "Take measures of a scan, each with its uncertainty.",
     "view": "Draw the surface, and write a page to turn, cut and measure it on.",

@@ -16,19 +16,21 @@ from .xyz import iterate_xyz, writing_csv, writing_xyz
 CLOUD_SUFFIXES = (".ply", ".las", ".laz", ".e57", ".xyz", ".csv")
 """The formats that are read and written."""
 
-_WRITERS: dict[str, Callable[[Path], AbstractContextManager[Callable[[PointCloud], None]]]] = {
+_Writing = AbstractContextManager[Callable[[PointCloud], None]]
+_WRITERS: dict[str, Callable[[Path], _Writing]] = {
     ".ply": writing_shown_ply,
-    ".las": writing_las,
-    ".laz": writing_las,
-    ".e57": writing_e57,
     ".xyz": writing_xyz,
     ".csv": writing_csv,
 }
+_PLACED_WRITERS: dict[str, Callable[[Path, str], _Writing]] = {
+    ".las": writing_las,
+    ".laz": writing_las,
+    ".e57": writing_e57,
+}
+"""Those that keep a coordinate system."""
 
 
-def writing_cloud_file(
-    path: Path,
-) -> AbstractContextManager[Callable[[PointCloud], None]]:
+def writing_cloud_file(path: Path, *, wkt: str = "") -> _Writing:
     """Write a cloud block by block, in the format of the suffix.
 
     The file appears whole when the context ends, or not at all. XYZ keeps positions and normals
@@ -37,13 +39,17 @@ def writing_cloud_file(
 
     Args:
         path: The file; its suffix is one of .ply, .las, .laz, .e57, .xyz and .csv.
+        wkt: Coordinate system as well-known text, which LAS, LAZ and E57 keep; empty for none.
 
     Raises:
         InputError: The suffix is another.
         DeviceError: The disk is full or cannot be written.
     """
     check_cloud_suffix(path)
-    return _WRITERS[path.suffix.lower()](path)
+    suffix = path.suffix.lower()
+    if suffix in _PLACED_WRITERS:
+        return _PLACED_WRITERS[suffix](path, wkt)
+    return _WRITERS[suffix](path)
 
 
 def iterate_cloud_file(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud]:

@@ -13,6 +13,7 @@ from ..types.cloud import PointCloud
 from ..types.pose import Pose
 from .atomic import replacing
 from .cloud_columns import BLOCK, COLUMNS, SCALARS, as_rows, from_columns, known_name
+from .e57_header import open_new
 from .e57_xml import check_e57_xml
 
 if TYPE_CHECKING:
@@ -37,12 +38,16 @@ _FIELDS = {
 
 
 @contextmanager
-def writing_e57(path: Path) -> Iterator[Callable[[PointCloud], None]]:
+def writing_e57(path: Path, wkt: str = "") -> Iterator[Callable[[PointCloud], None]]:
     """Write a cloud block by block, as one scan in double precision.
 
     Normals are those of the surface-normal extension, `signal` is the intensity, and the other
     columns of cloud.ply have the prefix murk. The file appears whole when the context ends, or not
     at all.
+
+    Args:
+        path: The file.
+        wkt: Coordinate system as well-known text, its `coordinateMetadata`; empty for none.
 
     Raises:
         DeviceError: The disk is full or cannot be written.
@@ -51,7 +56,7 @@ def writing_e57(path: Path) -> Iterator[Callable[[PointCloud], None]]:
 
     lib = pye57.libe57
     arrays = {name: np.zeros(BLOCK, _buffer_type(name)) for name in _FIELDS}
-    with replacing(path) as aside, _open_to_write(pye57, aside) as file:
+    with replacing(path) as aside, _open_to_write(pye57, aside, wkt) as file:
         points = _add_scan(lib, file)
         writer = points.writer(_buffers(lib, file.image_file, arrays))
 
@@ -67,11 +72,11 @@ def writing_e57(path: Path) -> Iterator[Callable[[PointCloud], None]]:
 
 
 @contextmanager
-def _open_to_write(pye57: Any, path: Path) -> Iterator[Any]:
+def _open_to_write(pye57: Any, path: Path, wkt: str) -> Iterator[Any]:
     """Open a file; it is finished only if nothing goes wrong."""
     file = None
     try:
-        file = pye57.E57(str(path), mode="w")
+        file = open_new(pye57, path, wkt)
         yield file
         file.close()
     except BaseException as error:

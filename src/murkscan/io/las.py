@@ -26,12 +26,16 @@ _POINT_FORMAT = 6
 
 
 @contextmanager
-def writing_las(path: Path) -> Iterator[Callable[[PointCloud], None]]:
+def writing_las(path: Path, wkt: str = "") -> Iterator[Callable[[PointCloud], None]]:
     """Write a cloud block by block, packed where the suffix is .laz.
 
     Coordinates are in metres, in steps of 0.01 mm from the whole metre next to the first points.
     What LAS has no field for are extra dimensions with the names of cloud.ply's columns; `signal`
     is the intensity, too. The file appears whole when the context ends, or not at all.
+
+    Args:
+        path: The file.
+        wkt: Coordinate system as well-known text; empty for none.
 
     Raises:
         InputError: Points lie farther than 21 km from the first ones, or are not finite.
@@ -42,6 +46,9 @@ def writing_las(path: Path) -> Iterator[Callable[[PointCloud], None]]:
     header = laspy.LasHeader(point_format=_POINT_FORMAT, version="1.4")
     header.generating_software = "murkscan"
     header.scales = np.full(3, _STEP)
+    if wkt:
+        header.vlrs.append(laspy.vlrs.known.WktCoordinateSystemVlr(wkt))
+        header.global_encoding.wkt = True
     header.add_extra_dims([laspy.ExtraBytesParams(name, COLUMNS[name]) for name in _EXTRA])
     is_placed = False
     with replacing(path) as aside, _blaming_the_disk():

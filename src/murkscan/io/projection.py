@@ -39,14 +39,8 @@ def project_places(latitude: Scalars, longitude: Scalars, crs: str | None) -> Pr
         InputError: There is no such coordinate system, or its unit is not the metre.
         MissingDependency: pyproj is not installed.
     """
-    try:
-        import pyproj
-    except ImportError as error:
-        raise MissingDependency(
-            "Latitude and longitude become metres by pyproj; install it with: "
-            "pip install 'murkscan[dive]'"
-        ) from error
-    system = _find_system(pyproj, crs or _utm(float(latitude[0]), float(longitude[0])))
+    pyproj = import_pyproj("Latitude and longitude become metres")
+    system = find_system(pyproj, crs or _utm(float(latitude[0]), float(longitude[0])))
     to_grid = pyproj.Transformer.from_crs(_GLOBE, system, always_xy=True)
     east, north = to_grid.transform(longitude, latitude)
     if not (np.isfinite(east).all() and np.isfinite(north).all()):
@@ -61,7 +55,34 @@ def project_places(latitude: Scalars, longitude: Scalars, crs: str | None) -> Pr
     )
 
 
-def _find_system(pyproj: Any, crs: str) -> Any:
+def import_pyproj(what: str) -> Any:
+    """Import pyproj.
+
+    Args:
+        what: What is done by it, for the error.
+
+    Raises:
+        MissingDependency: It is not installed.
+    """
+    try:
+        import pyproj
+    except ImportError as error:
+        raise MissingDependency(
+            f"{what} by pyproj; install it with: pip install 'murkscan[dive]'"
+        ) from error
+    return pyproj
+
+
+def find_system(pyproj: Any, crs: str) -> Any:
+    """Find a projected coordinate system in metres.
+
+    Args:
+        pyproj: The library.
+        crs: The system, as EPSG:N.
+
+    Raises:
+        InputError: There is none of this name, or it is none in metres.
+    """
     try:
         system = pyproj.CRS.from_user_input(crs)
     except pyproj.exceptions.CRSError as error:

@@ -5,8 +5,11 @@ from .describe import describe as describe
 from .describe import digest as digest
 from .files import StageFiles as StageFiles
 from .folder import Project as Project
+from .georeferenced import is_georeferenced as is_georeferenced
+from .georeferenced import load_georeference as load_georeference
 from .kinds import CLOUD as CLOUD
 from .kinds import EXTRACT as EXTRACT
+from .kinds import GEOREFERENCE as GEOREFERENCE
 from .kinds import MEASURE as MEASURE
 from .kinds import MESH as MESH
 from .kinds import MOTION as MOTION
@@ -20,6 +23,7 @@ from .lock import hold as hold
 from .results import AlignmentResult as AlignmentResult
 from .results import CloudResult as CloudResult
 from .results import ExtractResult as ExtractResult
+from .results import GeoreferenceResult as GeoreferenceResult
 from .results import MeasureResult as MeasureResult
 from .results import MeshResult as MeshResult
 from .results import MotionResult as MotionResult

@@ -6,6 +6,7 @@ from typing import Any, Generic, TypeVar
 from .results import (
     CloudResult,
     ExtractResult,
+    GeoreferenceResult,
     MeasureResult,
     MeshResult,
     MotionResult,
@@ -41,6 +42,8 @@ REPORT = Kind("report", ReportResult, meaning=2)
 
 MEASURE = Kind("measure", MeasureResult, meaning=1)
 """Not in order: each measurement is one of its own, told from others in the folder by its name."""
+GEOREFERENCE = Kind("georeference", GeoreferenceResult, meaning=1)
+"""Not in order: what is exported after it lies in its grid."""
 SIMULATE = Kind("simulate", SimulateResult, meaning=1)
 """In a folder of its own, that of the recording."""
 

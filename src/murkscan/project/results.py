@@ -229,6 +229,43 @@ class MeasureResult:
 
 
 @dataclass(frozen=True)
+class ControlResult:
+    """How well the model meets one control point."""
+
+    name: str
+    residual: tuple[float, ...] = field(metadata={"unit": "m"})
+    """Control point less model, along east, north and up [m]."""
+    sigma: float = field(metadata={"unit": "m"})
+    """As the file states it [m]."""
+    standardised: float
+    """Length of the residual in its own standard deviations; about 1.7 is usual."""
+
+
+@dataclass(frozen=True)
+class GeoreferenceResult:
+    """Where a model lies on the Earth; see `Georeference`."""
+
+    crs: str
+    wkt: str
+    scale: float
+    """Length in the grid of a metre on the ground."""
+    origin: tuple[float, ...] = field(metadata={"unit": "m"})
+    """Easting, northing and height from which the ground counts [m]."""
+    rotation: tuple[tuple[float, ...], ...]
+    """Rotation matrix ground_from_model: east, north, up of the model's x, y, z."""
+    translation: tuple[float, ...] = field(metadata={"unit": "m"})
+    covariance_of_turn_and_shift: tuple[tuple[float, ...], ...]
+    """About the origin [rad², rad·m, m²]."""
+    points: tuple[ControlResult, ...]
+    rms: float = field(metadata={"unit": "m"})
+    """Root mean square of the residuals' lengths [m]."""
+    inflation: float = 1.0
+    """Factor by which the residuals are larger than the stated sigmas; the covariance has it."""
+    remarks: tuple[str, ...] = ()
+    """What is odd, with its cure; sentences for the user."""
+
+
+@dataclass(frozen=True)
 class SimulateResult:
     """What was simulated."""
 

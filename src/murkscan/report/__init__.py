@@ -15,6 +15,8 @@ from .merged import ReportedPass as ReportedPass
 from .merged import ReportedRig as ReportedRig
 from .merged import merged_as_html as merged_as_html
 from .merged import merged_as_json as merged_as_json
+from .placed import ControlRow as ControlRow
+from .placed import Placed as Placed
 from .plain import as_json as as_json
 from .reach import Reach as Reach
 from .recorded import Model as Model

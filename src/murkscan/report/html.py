@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from ..page import Block, Facts, Gallery, Note, Picture, Section, Table, format_cell, render_page
 from .charts import depth_chart, points_chart, signal_chart
 from .distribution_charts import sigma_distribution, signal_distribution
+from .placed import placed_sections
 from .recorded import Model, Shown
 from .sections import (
     belief_rows,
@@ -60,6 +61,7 @@ def as_html(summary: ScanSummary) -> str:
             summary.trust, motion=summary.recorded.motion, unstated=summary.recorded.unstated
         )
         sections.append(Section("Uncertainty at 68 and 95 %", blocks))
+    sections += placed_sections(summary.model.placed)
     calibrated = calibration_blocks(summary.recorded.calibration, summary.steps)
     sections.append(Section("Calibration", calibrated))
     if summary.recorded.skips:

@@ -8,6 +8,7 @@ from ..page import Block, Facts, Note, Section, Table, format_cell, render_page
 from ..types.rig import Rig
 from .calibrated import CalibrationStep
 from .html import gallery, size_facts, uncertainty_blocks
+from .placed import placed_as_plain, placed_sections
 from .plain import as_uncertainty
 from .plain_numbers import round_off
 from .recorded import Model, Shown
@@ -115,6 +116,7 @@ def merged_as_html(summary: MergedSummary) -> str:
         sections.append(Section("Pictures", [gallery(summary.pictures, is_first_large=True)]))
     if summary.trust is not None:
         sections.append(Section("Uncertainty at 68 and 95 %", _uncertainty(summary)))
+    sections += placed_sections(summary.model.placed)
     for number, one in enumerate(summary.rigs, 1):
         blocks = [Table(rig_rows(one.rig)), *calibration_blocks(one.calibration, one.steps)]
         sections.append(Section(f"Rig {number}", blocks))
@@ -140,6 +142,7 @@ def merged_as_json(summary: MergedSummary) -> dict[str, Any]:
             "faces": model.faces,
             "origin_m": list(model.origin),
         },
+        "georeference": placed_as_plain(model.placed),
         "size_mm": None if model.size is None else [round_off(1e3 * edge) for edge in model.size],
         "uncertainty_mm": None if summary.trust is None else as_uncertainty(summary.trust),
         "not_in_uncertainty": list(summary.unstated),

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from .placed import placed_as_plain
 from .plain_numbers import as_list, as_plain, round_off
 from .plain_verdicts import as_plain_verdicts
 from .summary import ScanSummary
@@ -24,6 +25,7 @@ def as_json(summary: ScanSummary) -> dict[str, Any]:
             "faces": model.faces,
             "origin_m": list(model.origin),
         },
+        "georeference": placed_as_plain(model.placed),
         "size_mm": None if model.size is None else [round_off(1e3 * edge) for edge in model.size],
         "signal_grey_levels": as_plain(summary.signal, 1.0),
         "depth_mm": as_plain(summary.depth, 1e3),

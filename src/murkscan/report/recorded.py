@@ -6,6 +6,7 @@ from datetime import date, datetime
 from typing import Any
 
 from ..types.background import Attenuation
+from .placed import Placed
 
 
 @dataclass(frozen=True)
@@ -83,3 +84,5 @@ class Model:
     """Extent of the cloud along the world's x, y and z [m]; None without points."""
     origin: tuple[float, ...] = (0.0, 0.0, 0.0)
     """Where the coordinates of mesh.stl and mesh.glb count from in the world [m]."""
+    placed: Placed | None = None
+    """Where it lies on the Earth, if somebody has said so."""

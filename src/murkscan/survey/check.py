@@ -7,7 +7,17 @@ from typing import Any
 
 from ..errors import MurkscanError
 from ..io.checksum import mark_file
-from ..project import MEASURE, SIMULATE, STAGES, Kind, Project, Record, read_record, record_of
+from ..project import (
+    GEOREFERENCE,
+    MEASURE,
+    SIMULATE,
+    STAGES,
+    Kind,
+    Project,
+    Record,
+    read_record,
+    record_of,
+)
 from .progress import Progress, silent
 
 _RECORD = ".stage.json"
@@ -44,7 +54,7 @@ def check_project(project: Project, *, progress: Progress = silent) -> list[Stag
     if _is_simulation(project.root):
         return [_check_folder(project, SIMULATE, project.root, [""])]
     project.load_scan()
-    checks, kinds = [], (*STAGES, MEASURE)
+    checks, kinds = [], (*STAGES, GEOREFERENCE, MEASURE)
     for done, kind in enumerate(kinds):
         progress("check", done, len(kinds))
         folder = project.root / kind.word

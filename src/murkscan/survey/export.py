@@ -8,9 +8,12 @@ from ..cloud import thin_clouds
 from ..distribute import AbstractExecutor, Threads
 from ..errors import InputError
 from ..io.cloud_files import check_cloud_suffix, writing_cloud_file
-from ..project import CLOUD, STAGES, Project
+from ..project import CLOUD, GEOREFERENCE, MEASURE, STAGES, Project, load_georeference
 from ..types.cloud import PointCloud
 from .progress import Progress, silent
+
+_FOLDERS = tuple(kind.word for kind in (*STAGES, GEOREFERENCE, MEASURE))
+"""Folders in which only stages write."""
 
 
 def export_cloud(
@@ -22,6 +25,8 @@ def export_cloud(
     progress: Progress = silent,
 ) -> int:
     """Write the cloud of a scan to a file, with bounded memory.
+
+    Where the scan is georeferenced, the file lies in its coordinate system, and names it if it can.
 
     Args:
         project: A scan with a finished cloud stage.
@@ -35,7 +40,7 @@ def export_cloud(
         The number of points written.
 
     Raises:
-        MissingResult: The cloud stage has not been finished.
+        MissingResult: The cloud stage has not been finished, or made anew since `georeference`.
         InputError: The suffix is no cloud's, the cloud is empty, or the file lies among what a
             stage has made.
         DeviceError: The disk is full.
@@ -44,11 +49,11 @@ def export_cloud(
     check_export(path)
     if count == 0:
         raise InputError(f"The cloud of {project.root} has no points; there is nothing to export.")
-    blocks = _Blocks(project, executor or Threads())
+    blocks, place = _Blocks(project, executor or Threads()), load_georeference(project)
     written = 0
-    with writing_cloud_file(path) as write:
+    with writing_cloud_file(path, wkt="" if place is None else place.wkt) as write:
         for block in blocks if voxel is None else thin_clouds(blocks, voxel):
-            write(block)
+            write(block if place is None else place.carry(block))
             written += len(block)
             progress("export", written, count if voxel is None else None)
     progress("export", written, written)
@@ -74,7 +79,7 @@ def require_outside_stages(path: Path) -> None:
     path = path.resolve()
     for root in path.parents:
         stage = path.relative_to(root).parts[0]
-        if stage in (*(kind.word for kind in STAGES), "measure") and (root / "scan.json").exists():
+        if stage in _FOLDERS and (root / "scan.json").exists():
             raise InputError(
                 f"{path} lies among the files of the {stage} stage; export to another folder."
             )

@@ -2,7 +2,6 @@
 
 import shlex
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import combinations
 from pathlib import PurePosixPath
 
@@ -58,7 +57,6 @@ def summarise_merged(project: Project, pictures: list[Shown]) -> MergedSummary:
     model, _ = measure_cloud(
         project.iterate_cloud(), 0, (mesh.vertices, mesh.faces), is_stated=errors.is_stated
     )
-    model = replace(model, origin=mesh.origin)
     return MergedSummary(
         name=project.root.resolve().name,
         passes=[

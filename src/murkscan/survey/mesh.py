@@ -28,6 +28,7 @@ from ..project import (
     describe,
     find_trajectory,
     is_merged,
+    load_georeference,
 )
 from ..project.blocks import BLOCK, Block, cut_blocks, trim_beside
 from ..types.cloud import PointCloud
@@ -106,6 +107,8 @@ def build_mesh(
 def export_mesh(project: Project, path: Path) -> int:
     """Write a finished surface to another file, and count its triangles.
 
+    Where the scan is georeferenced, the file lies in its coordinate system.
+
     Args:
         project: A scan with a finished mesh stage.
         path: The file; its suffix is one of .ply, .stl, .obj and .glb.
@@ -117,7 +120,9 @@ def export_mesh(project: Project, path: Path) -> int:
         DeviceError: The disk is full or cannot be written.
     """
     check_mesh_export(path)
-    mesh = project.load_mesh()
+    mesh, place = project.load_mesh(), load_georeference(project)
+    if place is not None:
+        mesh = replace(mesh, vertices=place.place(mesh.vertices))
     save_mesh(path, mesh)
     return len(mesh.faces)
 

@@ -9,6 +9,7 @@ from ..io.values import as_plain
 from ..project import (
     CLOUD,
     EXTRACT,
+    GEOREFERENCE,
     MESH,
     REPORT,
     STAGES,
@@ -16,13 +17,17 @@ from ..project import (
     Project,
     ReportResult,
     digest,
+    is_georeferenced,
     is_merged,
     load_scan_rig,
 )
 from ..report import (
     AT_95,
     CalibrationStep,
+    ControlRow,
     MergedSummary,
+    Model,
+    Placed,
     ScanSummary,
     Shown,
     as_html,
@@ -62,11 +67,10 @@ def write_report(
     if spacing is not None and not 0 < spacing < math.inf:
         raise InputError(f"The wanted spacing must be above 0 mm, got {1e3 * spacing:g} mm.")
     told = replace(project.load_scan(), started=None)
-    stage = project.stage(
-        REPORT,
-        settings={"spacing": spacing},
-        inputs={"view": project.finished(VIEW).digest, "scan": digest(as_plain(told))},
-    )
+    inputs = {"view": project.finished(VIEW).digest, "scan": digest(as_plain(told))}
+    if is_georeferenced(project):
+        inputs["georeference"] = project.finished(GEOREFERENCE).digest
+    stage = project.stage(REPORT, settings={"spacing": spacing}, inputs=inputs)
 
     def make(summary: ScanSummary | MergedSummary) -> ReportResult:
         if isinstance(summary, MergedSummary):
@@ -77,10 +81,22 @@ def write_report(
 
     def prepare() -> ScanSummary | MergedSummary:
         if is_merged(project):
-            return summarise_merged(project, _pictures(project))
-        return _summarise(project, spacing)
+            merged = summarise_merged(project, _pictures(project))
+            return replace(merged, model=_place(project, merged.model))
+        summary = _summarise(project, spacing)
+        return replace(summary, model=_place(project, summary.model))
 
     return run_stage(project, stage, make, prepare=prepare, progress=progress)
+
+
+def _place(project: Project, model: Model) -> Model:
+    """Say where the model's files count from, and where on the Earth it lies."""
+    origin = project.finished(MESH).result.origin
+    if not is_georeferenced(project):
+        return replace(model, origin=origin)
+    told = project.finished(GEOREFERENCE).result
+    rows = [ControlRow(one.name, one.residual, one.sigma) for one in told.points]
+    return replace(model, origin=origin, placed=Placed(told.crs, rows, told.rms, told.remarks))
 
 
 def _in_short(summary: ScanSummary) -> ReportResult:
@@ -143,7 +159,6 @@ def _summarise(project: Project, spacing: float | None) -> ScanSummary:
         durations={word: stage.record.seconds for word, stage in stages.items()},
         pictures=_pictures(project),
     )
-    summary = replace(summary, model=replace(summary.model, origin=mesh.origin))
     kept = project.load_kept_parts()
     return with_coverage(summary, kept, frames=frames, trajectory=trajectory)
 

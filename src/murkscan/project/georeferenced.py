@@ -1,0 +1,39 @@
+"""Where a scan's folder says that its model lies on the Earth."""
+
+import numpy as np
+
+from ..types.georeference import Georeference
+from ..types.pose import Pose
+from .folder import Project
+from .kinds import GEOREFERENCE
+from .results import GeoreferenceResult
+from .stage import read_record, record_of
+
+
+def is_georeferenced(project: Project) -> bool:
+    """Tell whether somebody has said where a scan lies on the Earth."""
+    return read_record(record_of(project.root / GEOREFERENCE.word)) is not None
+
+
+def load_georeference(project: Project) -> Georeference | None:
+    """Read where a scan lies on the Earth; None where nobody has said so.
+
+    Raises:
+        MissingResult: What was said is of an earlier cloud.
+        FormatError: It is damaged.
+    """
+    if not is_georeferenced(project):
+        return None
+    return as_georeference(project.finished(GEOREFERENCE).result)
+
+
+def as_georeference(result: GeoreferenceResult) -> Georeference:
+    """Make the way to the grid of the numbers in a record."""
+    return Georeference(
+        result.crs,
+        result.wkt,
+        np.array(result.origin),
+        result.scale,
+        Pose(np.array(result.rotation), np.array(result.translation)),
+        np.array(result.covariance_of_turn_and_shift),
+    )
