@@ -39,10 +39,7 @@ def placed_sections(placed: Placed | None) -> list[Section]:
         "exported lies there; pictures, measures and the model's page stay in the model's own "
         f"world. The residuals are {1e3 * placed.rms:.2f} mm (RMS of their lengths)."
     )
-    rows = [
-        [one.name, *(round(1e3 * part, 2) for part in one.residual), 1e3 * one.sigma]
-        for one in placed.rows
-    ]
+    rows = [(one.name, *_as_mm(one.residual), *_as_mm((one.sigma,))) for one in placed.rows]
     head = ("control point", "east [mm]", "north [mm]", "up [mm]", "stated sigma [mm]")
     odd = [Note(remark, "warning") for remark in placed.remarks]
     return [Section("Place on the Earth", [Note(text), *odd, Table(rows, head=head)])]
@@ -65,3 +62,7 @@ def placed_as_plain(placed: Placed | None) -> dict[str, Any] | None:
             for one in placed.rows
         ],
     }
+
+
+def _as_mm(lengths: tuple[float, ...]) -> list[str]:
+    return [f"{1e3 * length:.2f}" for length in lengths]
