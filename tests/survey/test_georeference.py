@@ -36,7 +36,7 @@ def table(places, points=ON_MODEL, sigma=2):
 @pytest.fixture(scope="module")
 def scanned(tmp_path_factory):
     profile, trajectory = scan(plane, spacing=8e-3)
-    cloud = merge_profiles(profile, trajectory, axis="x")
+    cloud = merge_profiles(profile, trajectory, axes=("x",))
     project = Project(tmp_path_factory.mktemp("placed") / "out")
     project.save_scan(SCAN)
     finish(project, CLOUD, CloudResult(len(cloud), 0), make=lambda: save_cloud(project, cloud))
