@@ -9,6 +9,7 @@ from cyclopts import App
 from murkscan import load_rig
 from murkscan.cli.main import app
 from murkscan.cli.progress import progress_bars
+from murkscan.io.images import write_image
 from murkscan.optics.medium import Medium
 from murkscan.plan import Conditions, attenuation_from_visibility, forecast
 from murkscan.studio.commands import FORMS
@@ -96,6 +97,25 @@ def test_a_plan_without_its_water_is_a_sentence(ask, water):
     answer = ask.get("api/plan", params={"rig": "rig.toml", **water})
     assert answer.status_code == 400
     assert answer.text.endswith((".", "'far'."))
+
+
+def test_boards_are_found_in_a_folder_as_photographs_come(folder, ask):
+    photos = folder / "boards"
+    photos.mkdir()
+    squares = np.kron(np.indices((7, 10)).sum(axis=0) % 2, np.ones((30, 30)))
+    board = np.pad(190 * squares + 40, 60, constant_values=230).astype(np.uint8)
+    write_image(photos / "a.png", board)
+    write_image(photos / "b.png", np.full(board.shape, 90, np.uint8))
+    for _ in range(300):
+        told = ask.get("api/boards", params={"folder": "boards", "board": "9x6"}).json()
+        if told["so_far"]:
+            break
+        time.sleep(0.1)
+    first, second = told["photos"]
+    assert (first["reason"], len(first["corners"])) == ("", 54)
+    assert second["reason"] == "shows no board"
+    assert "Need at least 4 views" in told["so_far"]["verdict"]
+    assert ask.get("api/boards", params={"folder": "boards", "board": "9"}).status_code == 400
 
 
 def test_a_board_has_the_size_it_says():

@@ -21,6 +21,7 @@ from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp
 
 from ..errors import FormatError, InputError, MurkscanError
+from .boards import Boards, tell_drawn
 from .commands import make_command
 from .finds import look_around
 from .guard import Guard
@@ -62,6 +63,8 @@ def make_app(
         Route("/api/rig", _said(studio.rig)),
         Route("/api/plan", _said(studio.plan)),
         Route("/api/scan", _said(studio.scan)),
+        Route("/api/boards", _said(studio.boards)),
+        Route("/api/drawn", _said(studio.drawn)),
         Route("/api/command", _said(studio.command), methods=["POST"]),
         Route("/api/jobs", _said(studio.start), methods=["POST"]),
         Route("/api/jobs/{name}/stop", _said(studio.stop), methods=["POST"]),
@@ -81,7 +84,7 @@ class _Studio:
     """One folder, and what runs in it."""
 
     def __init__(self, sandbox: Sandbox, jobs: Jobs) -> None:
-        self._sandbox, self.jobs = sandbox, jobs
+        self._sandbox, self.jobs, self._boards = sandbox, jobs, Boards(sandbox)
         self._forecasts = anyio.CapacityLimiter(_FORECASTS)
 
     async def page(self, request: Request) -> Response:
@@ -117,6 +120,18 @@ class _Studio:
         """Say what a scan has come to."""
         name = request.query_params.get("name", "")
         return await to_thread.run_sync(tell_scan, self._sandbox, name)
+
+    async def boards(self, request: Request) -> Any:
+        """Say which photos of a folder show a board."""
+        asked = request.query_params
+        task = partial(self._boards.tell, asked.get("folder", ""), asked.get("board", ""))
+        return await to_thread.run_sync(task)
+
+    async def drawn(self, request: Request) -> Any:
+        """List what a calibration drew."""
+        asked = request.query_params
+        task = partial(tell_drawn, self._sandbox, asked.get("rig", ""), asked.get("step", ""))
+        return await to_thread.run_sync(task)
 
     async def command(self, request: Request) -> Any:
         """Write a command as it would be typed, without running it."""

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from jaxtyping import Bool
 
 from ...types.arrays import Pixels
 
@@ -11,7 +12,7 @@ _CELLS = 10
 _ROWS, _COLUMNS = ("top", "middle", "bottom"), ("left", "middle", "right")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class BoardCoverage:
     """How much of the picture was used."""
 
@@ -19,6 +20,8 @@ class BoardCoverage:
     """Share of the cells of a 10 by 10 grid in which a corner was."""
     emptiest_place: str
     """Where most cells are empty, in words that follow "the board"."""
+    cells: Bool[np.ndarray, "10 10"]
+    """In which cells a corner was, the top row first."""
 
 
 def cover(corners: Pixels, size: tuple[int, int]) -> BoardCoverage:
@@ -32,4 +35,4 @@ def cover(corners: Pixels, size: tuple[int, int]) -> BoardCoverage:
     shares = np.add.reduceat(np.add.reduceat(seen, thirds, 0), thirds, 1) / sizes
     place = _ROWS[int(np.argmin(shares)) // 3], _COLUMNS[int(np.argmin(shares)) % 3]
     where = "in the middle" if place == ("middle", "middle") else f"at the {' '.join(place)}"
-    return BoardCoverage(float(seen.mean()), where)
+    return BoardCoverage(float(seen.mean()), where, seen > 0)

@@ -2,6 +2,7 @@
 
 import { watch } from "./ask.js";
 import { make } from "./dom.js";
+import { calibratePage } from "./calibrate.js";
 import { showJobs } from "./job.js";
 import { lookPage } from "./look.js";
 import { planPage } from "./plan.js";
@@ -10,6 +11,7 @@ import { startTheme } from "./theme.js";
 
 const PAGES = {
   rig: ["Rig", rigPage],
+  calibrate: ["Calibrate", calibratePage],
   look: ["Look", lookPage],
   plan: ["Plan", planPage],
 };
@@ -27,7 +29,7 @@ function show() {
   const main = document.getElementById("page");
   main.replaceChildren();
   leave = page(main, rest) ?? (() => {});
-  main.scrollTop = 0;
+  scrollTo(0, 0);
 }
 
 addEventListener("hashchange", show);

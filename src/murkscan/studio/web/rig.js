@@ -51,7 +51,7 @@ function describe(rig) {
   ];
 }
 
-function card(step) {
+export function card(step) {
   const [kind] = step.step.split(" ");
   const isOptional = kind === "port" || kind === "mount";
   const word = step.is_calibrated ? (step.is_good ? "good" : "usable") : step.is_there ? "as written" : isOptional ? "none" : "missing";
@@ -62,10 +62,11 @@ function card(step) {
     step.is_calibrated
       ? [note(step.verdict, step.is_good ? "good" : "warning"),
         make("p", { className: "muted", textContent: `${step.date}: ${step.views} of ${step.photos} photographs used, board ${step.board}; corners off by ${step.rms_px} px` }),
-        step.errors.length ? table(["known to ± 1σ", "at", "mm"], step.errors.map((e) => [e.what, `${e.distance_mm} mm`, e.sigma_mm])) : null,
+        step.errors.length ? table(["what", "at", "known to, 1σ"], step.errors.map((e) => [e.what, `${e.distance_mm.toFixed(0)} mm`, `± ${e.sigma_mm.toPrecision(2)} mm`])) : null,
         unused.length ? make("details", {}, make("summary", { textContent: `${unused.length} photographs not used, and why` }), table(["photograph", "reason"], unused)) : null]
       : note(step.is_there ? `Written by hand: how well it is known is not stated. ${NEXT[kind]}` : NEXT[kind]),
     make("div", { className: "row" },
+      make("a", { className: "button", href: `#calibrate/${kind}`, textContent: step.is_calibrated ? "Again" : "Calibrate" }),
       step.page ? make("a", { className: "button", href: addressOf(step.page), target: "_blank", textContent: "All of it" }) : null));
 }
 
