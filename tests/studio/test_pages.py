@@ -113,7 +113,7 @@ def test_boards_are_found_in_a_folder_as_photographs_come(folder, ask):
         time.sleep(0.1)
     first, second = told["photos"]
     assert (first["reason"], len(first["corners"])) == ("", 54)
-    assert second["reason"] == "shows no board"
+    assert second["reason"] == "shows no chessboard"
     assert "Need at least 4 views" in told["so_far"]["verdict"]
     assert ask.get("api/boards", params={"folder": "boards", "board": "9"}).status_code == 400
 
