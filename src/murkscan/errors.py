@@ -10,6 +10,7 @@ MurkscanError
 ├── MissingResult      (also FileNotFoundError)  an earlier stage has not been run
 ├── MissingDependency  (also ImportError)        an extra is not installed
 ├── DeviceError        (also OSError)            a camera, a disk or a worker failed
+│   └── StreamLost                               pictures stopped coming; they may come again
 └── Cancelled                                    somebody stopped it
 
 Every message is a sentence that says what is wrong, with the numbers and the file, and what to do.
@@ -54,6 +55,10 @@ class MissingDependency(MurkscanError, ImportError):
 
 class DeviceError(MurkscanError, OSError):
     """A camera, a disk or a worker failed."""
+
+
+class StreamLost(DeviceError):
+    """A stream or a camera is silent or broke off; it may come back."""
 
 
 class Cancelled(MurkscanError):

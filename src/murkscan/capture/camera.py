@@ -2,12 +2,12 @@
 
 import re
 import time
-from collections.abc import Iterator
+from collections.abc import Generator
 
 import cv2
 import numpy as np
 
-from ..errors import DeviceError
+from ..errors import StreamLost
 
 
 def is_camera(source: str) -> bool:
@@ -15,7 +15,7 @@ def is_camera(source: str) -> bool:
     return re.fullmatch(r"[0-9]{1,3}|/dev/video[0-9]+", source) is not None
 
 
-def camera_images(source: str) -> Iterator[tuple[np.ndarray, float]]:
+def camera_images(source: str) -> Generator[tuple[np.ndarray, float], None, None]:
     """Take pictures from a camera as they arrive.
 
     Args:
@@ -26,12 +26,12 @@ def camera_images(source: str) -> Iterator[tuple[np.ndarray, float]]:
         beginning.
 
     Raises:
-        DeviceError: There is no such camera, it is in use, or it stops.
+        StreamLost: There is no such camera, it is in use, or it stops.
     """
     camera = cv2.VideoCapture(int(source) if source.isdigit() else source)
     try:
         if not camera.isOpened():
-            raise DeviceError(
+            raise StreamLost(
                 f"Camera {source} cannot be opened; check that it is plugged in, that no other "
                 "program uses it, and that you may use video devices."
             )
@@ -39,7 +39,7 @@ def camera_images(source: str) -> Iterator[tuple[np.ndarray, float]]:
             arrived, image = camera.read()
             now = time.monotonic()
             if not arrived:
-                raise DeviceError(f"Camera {source} stopped sending; check its cable.")
+                raise StreamLost(f"Camera {source} stopped sending; check its cable.")
             yield (image if image.ndim == 2 else image[:, :, ::-1]), now
     finally:
         camera.release()

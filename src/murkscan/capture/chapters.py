@@ -134,6 +134,9 @@ class Chapters(AbstractRecording):
 def open_chapters(parts: Sequence[AbstractRecording]) -> Chapters:
     """Join recordings into one: each begins one picture after the last one of the part before.
 
+    A Matroska file that itself begins later keeps its times: `murkscan live` writes chapters so
+    where a stream was lost for a while, since the camera moved on meanwhile.
+
     Raises:
         FormatError: They differ in size or in their fields.
         InputError: One of them is no video.
@@ -159,8 +162,9 @@ def open_chapters(parts: Sequence[AbstractRecording]) -> Chapters:
     starts = [0, *(np.cumsum(counts) * each).tolist()]
     shifts, begin = [], first.span[0]
     for part, count in zip(same, counts, strict=True):
-        shifts.append(begin - part.span[0])
-        begin += count * part.clock.period
+        is_later = part.path.suffix.lower() == ".mkv" and part.span[0] > begin
+        shifts.append(0.0 if is_later else begin - part.span[0])
+        begin = shifts[-1] + _end(part, count)
     said = [f"{part.path.name}: {remark}" for part in same for remark in part.remarks]
     names = ", ".join(part.path.name for part in same[:4]) + (" …" if len(same) > 4 else "")
     return Chapters(
@@ -174,6 +178,13 @@ def open_chapters(parts: Sequence[AbstractRecording]) -> Chapters:
         starts=tuple(starts),
         shifts=tuple(shifts),
     )
+
+
+def _end(part: Video, count: int) -> float:
+    """Compute when the picture after a part's last one would come, by the part's own times [s]."""
+    if part.index is not None and part.clock.rate is None:
+        return float(part.index.times[-1]) + part.clock.period
+    return part.span[0] + count * part.clock.period
 
 
 def _claimed(part: Video, each: int) -> int | None:

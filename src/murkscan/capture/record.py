@@ -1,6 +1,6 @@
 """Recording pictures losslessly into a file, with the times at which they came."""
 
-from collections.abc import Generator, Iterable
+from collections.abc import Callable, Generator, Iterable
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -21,7 +21,11 @@ _FORMATS = {
 
 
 def record_images(
-    images: Iterable[tuple[np.ndarray, float]], out: Path, *, seconds: float | None = None
+    images: Iterable[tuple[np.ndarray, float]],
+    out: Path,
+    *,
+    seconds: float | None = None,
+    begin: Callable[[], float] = lambda: 0.0,
 ) -> Generator[RecordingProgress, None, None]:
     """Write pictures into a Matroska file, compressed without loss (FFV1).
 
@@ -32,6 +36,7 @@ def record_images(
             which they came [s], increasing; the first becomes 0.
         out: Where the file shall be; nothing may stand there.
         seconds: Length of the recording [s]; without it, to the end of the pictures.
+        begin: Asked once, when the first picture comes: the time that it shall have [s].
 
     Yields:
         What is written so far, after each picture.
@@ -45,13 +50,14 @@ def record_images(
         Niedermayer, Rice, Martinez, FFV1 Video Coding Format Versions 0, 1, and 3, RFC 9043.
     """
     with growing_video(out) as container:
-        stream, first, last, size = None, None, -1, 0
+        stream, first, last, size, start = None, None, -1, 0, 0.0
         for frames, (image, time) in enumerate(images, start=1):
-            first = time if first is None else first
+            if first is None:
+                first, start = time, begin()
             if seconds is not None and time - first >= seconds:
                 break
             stream = stream or _add_stream(container, image)
-            last = max(round((time - first) * TICKS), last + 1)
+            last = max(round((start + time - first) * TICKS), last + 1)
             for packet in stream.encode(_picture(image, stream, last)):
                 size += packet.size
                 container.mux(packet)

@@ -1,7 +1,7 @@
 """Copying a network stream into a file as it comes, with its times."""
 
 import time
-from collections.abc import Generator, Iterator
+from collections.abc import Callable, Generator, Iterator
 from contextlib import closing
 from fractions import Fraction
 from pathlib import Path
@@ -9,7 +9,8 @@ from typing import Any
 
 import av
 
-from ..errors import DeviceError, InputError
+from ..errors import InputError, StreamLost
+from .coded import CodedPicture, PictureCodec, Tap, tell_nobody
 from .growing import TICKS, RecordingProgress, growing_video
 
 _OPTIONS = {
@@ -28,7 +29,13 @@ def is_stream(source: str) -> bool:
 
 
 def copy_stream(
-    source: str, out: Path, *, seconds: float | None = None, timeout: float = 10.0
+    source: str,
+    out: Path,
+    *,
+    seconds: float | None = None,
+    timeout: float = 10.0,
+    begin: Callable[[], float] = lambda: 0.0,
+    tap: Tap = tell_nobody,
 ) -> Generator[RecordingProgress, None, None]:
     """Copy a stream's video packet by packet into a Matroska file, without decoding it.
 
@@ -40,24 +47,30 @@ def copy_stream(
         out: Where the file shall be; nothing may stand there.
         seconds: Length of the recording [s]; without it, to the end of the stream.
         timeout: Longest wait for the stream, and for its next picture [s].
+        begin: Asked once, when the first picture comes: the time that it shall have [s].
+        tap: Given each picture's data, too, for who wants to see them while they come.
 
     Yields:
         What is written so far, after each packet.
 
     Raises:
         InputError: The SDP file is missing, or a file stands at `out`.
-        DeviceError: No stream comes, or it stops; what came is kept.
+        StreamLost: No stream comes, or it stops; what came is kept.
+        DeviceError: The disk is full; what came is kept.
     """
     if "://" not in source and not Path(source).exists():
         raise InputError(f"There is no SDP file {source}; save the one that the camera offers.")
     with growing_video(out) as container, closing(_open(source, timeout)) as stream:
         video = stream.streams.video[0]
         target = container.add_stream_from_template(video)
-        timeline, frames, size = StreamTimes(), 0, 0
+        codec = PictureCodec.of(video.codec_context)
+        timeline, frames, size, first = StreamTimes(), 0, 0, 0
         for packet in _packets(stream, source, timeout):
-            _place(packet, timeline)
-            if seconds is not None and packet.pts >= seconds * TICKS:
+            first = first if frames else round(begin() * TICKS)
+            _place(packet, timeline, first)
+            if seconds is not None and packet.pts - first >= seconds * TICKS:
                 return
+            tap(CodedPicture.of(packet, codec))
             packet.stream = target
             frames, size, last = frames + 1, size + packet.size, packet.pts
             container.mux(packet)
@@ -74,16 +87,16 @@ def _open(source: str, timeout: float) -> Any:
         raise _silence(source, timeout, error) from error
     if not stream.streams.video or not stream.streams.video[0].width:
         stream.close()
-        raise DeviceError(
+        raise StreamLost(
             f"{source} sends no video that can be understood within {timeout:g} s; check that it "
             "is the address of the picture, and let the camera send keyframes more often."
         )
     return stream
 
 
-def _silence(source: str, timeout: float, error: Any) -> DeviceError:
+def _silence(source: str, timeout: float, error: Any) -> StreamLost:
     why = "" if isinstance(error, av.error.ExitError) else f" ({error.strerror})"
-    return DeviceError(
+    return StreamLost(
         f"No stream comes from {source} within {timeout:g} s{why}; check that the camera is "
         "sending to this machine and this port, and that no firewall blocks it."
     )
@@ -100,14 +113,14 @@ def _packets(stream: Any, source: str, timeout: float) -> Iterator[Any]:
             if has_begun:
                 yield packet
             elif time.monotonic() - began > timeout:
-                raise DeviceError(
+                raise StreamLost(
                     f"{source} sent no keyframe within {timeout:g} s; let the camera send them "
                     "more often."
                 )
     except av.error.FFmpegError as error:
         silent = isinstance(error, av.error.ExitError)
         why = f"sent nothing for {timeout:g} s" if silent else f"broke off ({error.strerror})"
-        raise DeviceError(f"The stream {source} {why}; what came until then is kept.") from error
+        raise StreamLost(f"The stream {source} {why}; what came until then is kept.") from error
 
 
 class StreamTimes:
@@ -141,7 +154,7 @@ class StreamTimes:
         return max(ahead, self._last), self._last
 
 
-def _place(packet: Any, timeline: StreamTimes) -> None:
+def _place(packet: Any, timeline: StreamTimes, first: int) -> None:
     base = packet.time_base
     presented, decoded = (
         None if ticks is None else float(ticks * base) for ticks in (packet.pts, packet.dts)
@@ -149,5 +162,5 @@ def _place(packet: Any, timeline: StreamTimes) -> None:
     placed = timeline.place(presented, decoded)
     if packet.duration:
         packet.duration = round(packet.duration * base * TICKS)
-    packet.pts, packet.dts = placed
+    packet.pts, packet.dts = first + placed[0], first + placed[1]
     packet.time_base = Fraction(1, TICKS)

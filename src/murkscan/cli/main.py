@@ -16,6 +16,7 @@ _COMMANDS = {
     "calibrate": "Find out what the camera and the laser are.",
     "capture": "Record a stream or a camera into a file, as it comes.",
     "dive": "List what an MCAP, a bag or a .tlog holds: topics, rates, holes, clock steps.",
+    "live": "Record a dive, see it while it goes on, and scan it when it is over.",
     "scan": "Turn a recording into a measured 3D model: all stages in order.",
     "extract": "Find the stripe in every frame of a recording.",
     "triangulate": "Turn stripes into profiles in the camera's frame.",

@@ -40,7 +40,17 @@ def read_text_table(path: Path, what: str) -> TextTable:
     Raises:
         FormatError: The file cannot be read, or is no text.
     """
-    numbered = [(k, line.strip()) for k, line in enumerate(_read_lines(path, what), start=1)]
+    return parse_text_table(_read_lines(path, what))
+
+
+def parse_text_table(lines: Sequence[str], *, first: int = 1) -> TextTable:
+    """Make a table of lines; see `read_text_table`.
+
+    Args:
+        lines: The lines.
+        first: Number of the first of them in its file.
+    """
+    numbered = [(k, line.strip()) for k, line in enumerate(lines, start=first)]
     numbered = [(k, line) for k, line in numbered if line.strip(_LEADS)]
     names: tuple[str, ...] = ()
     separator: str | None = None

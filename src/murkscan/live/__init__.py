@@ -1,6 +1,20 @@
 """What a dive shows while it goes on: gauges, a preview that grows, and a map of its gaps."""
 
+from .drawing import draw_picture as draw_picture
 from .folder import LiveFolder as LiveFolder
 from .folder import LivePoints as LivePoints
 from .gap_map import GapMap as GapMap
+from .gauges import Look as Look
+from .gauges import find_working_range as find_working_range
+from .gauges import gauge_disk as gauge_disk
+from .gauges import gauge_speed as gauge_speed
+from .gauges import gauge_stand_off as gauge_stand_off
+from .gauges import gauge_stripe as gauge_stripe
+from .gauges import gauge_water as gauge_water
+from .mailbox import Mailbox as Mailbox
+from .recent import RecentLooks as RecentLooks
+from .recent import speed_of as speed_of
+from .spread import SpreadFrames as SpreadFrames
 from .status import LiveStatus as LiveStatus
+from .thinned import thin_points as thin_points
+from .watch import PictureWatch as PictureWatch

@@ -47,6 +47,8 @@ from .results import ScanRecord
 from .stage import Finished, Key, Stage, read_record, record_of
 
 R = TypeVar("R")
+_OF_A_DIVE = ("capture", "live")
+"""What `murkscan live` leaves in the folder before it scans into it."""
 
 
 @dataclass(frozen=True)
@@ -93,7 +95,8 @@ class Project:
             raise InputError(f"{self.root} is a file; give a folder with --out.")
         is_scan = (self.root / "scan.json").exists()
         # A hidden file is what a run left that was killed while it wrote its first one.
-        others = [file for file in self.root.glob("*") if not file.name.startswith(".")]
+        names = [file.name for file in self.root.glob("*") if not file.name.startswith(".")]
+        others = [name for name in names if name not in _OF_A_DIVE]
         if others and not is_scan:
             raise InputError(f"{self.root} holds other files; give a new folder with --out.")
 

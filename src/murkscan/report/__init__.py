@@ -4,8 +4,10 @@ from .belief import Belief as Belief
 from .calibrated import CalibrationStep as CalibrationStep
 from .calibrated import read_steps as read_steps
 from .coverage import Coverage as Coverage
+from .coverage import GrowingCoverage as GrowingCoverage
 from .coverage import map_coverage as map_coverage
 from .directions import SurfaceDirections as SurfaceDirections
+from .even_sample import EvenSample as EvenSample
 from .gathering import measure_cloud as measure_cloud
 from .histogram import Histogram as Histogram
 from .html import as_html as as_html

@@ -8,7 +8,7 @@ from jaxtyping import Float, Int
 
 from ..types.arrays import Scalars
 from ..types.profile import Profile
-from .coverage_cells import CellSums, choose_fullest, gather_cells
+from .coverage_cells import LONGEST, CellSums, add_up, choose_fullest, gather_cells, is_too_large
 from .directions import SurfaceDirections
 from .reach import Reach
 from .strips import cut_strips
@@ -126,3 +126,51 @@ class _Sheet:
             along, across = later.along[is_point], later.across[is_point]
             self.sums.append(CellSums.from_part(along, across, strips, self.cell))
             self.before = both.last_of_each_line()
+
+
+class GrowingCoverage:
+    """The map of a scan that is not at its end: parts are added in the order of their frames."""
+
+    def __init__(self, *, wanted: float, cell: float, most: int | None = None) -> None:
+        """Begin with nothing.
+
+        Args:
+            wanted: Wanted spacing of the points [m].
+            cell: Edge of the map's cells [m].
+            most: Cells above which they are made twice as large, to bound the memory; None: the
+                map shows no more than the first 1200 of a side.
+        """
+        self._wanted, self._most, self._cell = wanted, most, cell
+        self._sheet: _Sheet | None = None
+
+    def add(self, profiles: Iterable[Profile], layout: SwathLayout, reach: Reach) -> None:
+        """Add points of one laser that come after all that were added.
+
+        Args:
+            profiles: The points, in parts of whole frames in order.
+            layout: How they lie on frames and scan lines; its directions stay the same.
+            reach: How far the light went, as far as that is known.
+        """
+        if self._sheet is None:
+            self._sheet = _Sheet(layout, reach, HOLE * self._wanted, self._cell)
+        self._sheet.layout, self._sheet.reach = layout, reach
+        for profile in profiles:
+            self._sheet.add(profile)
+
+    def as_map(self) -> Coverage | None:
+        """Draw up the map of what was added; None without neighbours."""
+        sheet = self._sheet
+        if sheet is None or not sheet.sums:
+            return None
+        sums = add_up(sheet.sums)
+        while self._most is not None and is_too_large(sums, self._most):
+            sums, sheet.cell = add_up([sums.coarser()]), 2 * sheet.cell
+        sheet.sums = [sums]
+        longest = {} if self._most is None else {"longest": LONGEST}
+        cells = gather_cells([sums], edge=sheet.cell, **longest)
+        if cells is None:
+            return None
+        directions = sheet.layout.directions
+        return Coverage(
+            directions, self._wanted, sheet.hole, sheet.cell, *cells, reach=sheet.reach
+        )

@@ -16,6 +16,8 @@ _STRAYS = 0.001
 """Share of the area on either side of the map that may lie outside, with points that are false."""
 _MOST = 1200
 """Cells of a side, at most."""
+LONGEST = 8192
+"""The same of a map that grows; it is coarsened before it is longer."""
 _CLASSES = 1 + len(CAUSES)
 
 
@@ -44,6 +46,10 @@ class CellSums:
         areas = np.bincount(flat, weights=area, minlength=len(keys) * _CLASSES)
         return cls(_as_cells(keys), points, areas.reshape(-1, _CLASSES))
 
+    def coarser(self) -> "CellSums":
+        """Count by cells of twice the edge; a cell may have several rows."""
+        return CellSums(self.cell // 2, self.points, self.areas)
+
 
 def choose_fullest(sheets: Sequence[Sequence[CellSums]]) -> Sequence[CellSums]:
     """Take each cell as the sheet has it that covers most of it, so that no surface counts twice.
@@ -56,7 +62,7 @@ def choose_fullest(sheets: Sequence[Sequence[CellSums]]) -> Sequence[CellSums]:
     """
     if len(sheets) == 1:
         return sheets[0]
-    whole = [_add_up(parts) for parts in sheets]
+    whole = [add_up(parts) for parts in sheets]
     cells = np.concatenate([one.cell for one in whole])
     areas = np.concatenate([one.areas for one in whole])
     places, which = np.unique(cells, axis=0, return_inverse=True)
@@ -68,7 +74,7 @@ def choose_fullest(sheets: Sequence[Sequence[CellSums]]) -> Sequence[CellSums]:
     return [CellSums(places, points, areas[last])]
 
 
-def _add_up(parts: Sequence[CellSums]) -> CellSums:
+def add_up(parts: Sequence[CellSums]) -> CellSums:
     """Add up what parts of one sheet say of the same cells."""
     cells = np.concatenate([np.zeros((0, 2), np.int64), *(part.cell for part in parts)])
     areas = np.concatenate([np.zeros((0, _CLASSES)), *(part.areas for part in parts)])
@@ -82,7 +88,15 @@ def _add_up(parts: Sequence[CellSums]) -> CellSums:
 _Map = tuple[tuple[float, float], Int[np.ndarray, "h w"], Float[np.ndarray, "k h w"], Scalars]
 
 
-def gather_cells(sums: Sequence[CellSums], *, edge: float) -> _Map | None:
+def is_too_large(sums: CellSums, most: int) -> bool:
+    """Tell whether a map, merged, has more cells than that, or is longer than it may become."""
+    if not sums.areas.sum() > 0:
+        return False
+    low, high = _window(sums.cell, sums.areas.sum(axis=1), longest=2 * LONGEST)
+    return len(sums.cell) > most or bool((high - low >= LONGEST).any())
+
+
+def gather_cells(sums: Sequence[CellSums], *, edge: float, longest: int = _MOST) -> _Map | None:
     """Add up the cells of all parts: corner, points, areas, total; None where nothing has area.
 
     Cells far out, where a few false points lie, are left out of the map but not of the total.
@@ -92,7 +106,7 @@ def gather_cells(sums: Sequence[CellSums], *, edge: float) -> _Map | None:
     if not areas.sum() > 0:
         return None
     points = np.concatenate([part.points for part in sums])
-    low, high = _window(cells, areas.sum(axis=1))
+    low, high = _window(cells, areas.sum(axis=1), longest=longest)
     is_in = ((cells >= low) & (cells <= high)).all(axis=1)
     width, height = (high - low + 1).tolist()
     place = (cells[is_in, 1] - low[1]) * width + cells[is_in, 0] - low[0]
@@ -106,7 +120,9 @@ def gather_cells(sums: Sequence[CellSums], *, edge: float) -> _Map | None:
     )
 
 
-def _window(cells: Int[np.ndarray, "n 2"], weight: Scalars) -> tuple[np.ndarray, np.ndarray]:
+def _window(
+    cells: Int[np.ndarray, "n 2"], weight: Scalars, *, longest: int
+) -> tuple[np.ndarray, np.ndarray]:
     """Give the first and the last cell of a map that holds all but the strays."""
     ends = []
     for numbers in cells.T:
@@ -116,7 +132,7 @@ def _window(cells: Int[np.ndarray, "n 2"], weight: Scalars) -> tuple[np.ndarray,
         low, high = numbers[order][first], numbers[order][min(last, len(order) - 1)]
         margin = 2 + (high - low) // 20
         low, high = max(low - margin, numbers.min()), min(high + margin, numbers.max())
-        ends.append((low, min(high, low + _MOST)))
+        ends.append((low, min(high, low + longest)))
     return np.array(ends).T[0], np.array(ends).T[1]
 
 

@@ -40,6 +40,7 @@ def scan(
     lasers: Sequence[int] = (),
     rules: Sequence[AbstractOutlierRule] = OUTLIER_RULES,
     frames: bool = False,
+    spacing: float | None = None,
     rig_file: Path | None = None,
     command: Sequence[str] = (),
     executor: AbstractExecutor | None = None,
@@ -61,6 +62,8 @@ def scan(
         lasers: Numbers of the lasers whose stripes are followed; all of the rig unless given.
         rules: The reasons to take a point out of the cloud.
         frames: Whether to write one cloud a frame for more than 500 frames, too.
+        spacing: Wanted spacing of the points [m]; the report judges gaps by the scan's own unless
+            given.
         rig_file: The file of the rig, for what the report says of its calibration.
         command: The words that were typed after `murkscan`, for the report.
         executor: Who does the work; threads unless given. The result is the same.
@@ -94,7 +97,7 @@ def scan(
         build_cloud(project, rig, rules=rules, frames=frames, executor=executor, progress=progress)
         build_mesh(project, mesher, executor=executor, progress=progress)
         draw_views(project, progress=progress)
-        write_report(project, progress=progress)
+        write_report(project, spacing=spacing, progress=progress)
     return project
 
 

@@ -1,0 +1,109 @@
+"""murkscan live: record a dive, show it while it goes on, and scan it when it is over."""
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from cyclopts import Parameter, validators
+from cyclopts.types import PositiveFloat
+
+from ..ui.choices import ExtractorName, check_settings, make_extractor, make_method
+from .live_display import LiveDisplay
+from .live_motion import make_follower, make_mover
+from .options import ExecutorFlags, MotionFlags, Settings
+from .paths import RigFile
+from .progress import progress_bars
+from .typed import WORDS
+
+_Wait = Annotated[
+    PositiveFloat, Parameter(name="--timeout-s", validator=validators.Number(lte=86400))
+]
+_Patience = Annotated[
+    PositiveFloat, Parameter(name="--patience-s", validator=validators.Number(lte=86400))
+]
+
+
+def live(
+    source: str,
+    *,
+    rig: RigFile,
+    out: Path,
+    motion: MotionFlags = MotionFlags(),
+    work: ExecutorFlags = ExecutorFlags(),
+    spacing_mm: PositiveFloat = 5.0,
+    extractor: ExtractorName = "murk",
+    settings: Settings = (),
+    fields: Literal["auto", "progressive", "top-first", "bottom-first"] = "auto",
+    laser: int = 0,
+    seconds: PositiveFloat | None = None,
+    timeout: _Wait = 10.0,
+    patience: _Patience = 60.0,
+) -> None:
+    """Record a dive, see it while it goes on, and scan it when it is over.
+
+    The stream is recorded into OUT/capture as `murkscan capture` does; gauges, a preview that grows
+    and a map of gaps go to the terminal and into OUT/live. Ctrl-C ends the dive; then all of it is
+    scanned into OUT. Run the same command again to go on with a dive that was broken off.
+
+    Parameters
+    ----------
+    source
+        An address (udp://, rtp://, rtsp:// ...), an SDP file, a camera (its number, or /dev/video
+        and its number), or a recording, which is replayed at its own speed.
+    rig
+        The rig file of the camera and laser.
+    out
+        Folder for everything that is made.
+    spacing_mm
+        Wanted distance of neighbouring points [mm]: gaps and speed are judged by it.
+    extractor
+        The way to find the stripe.
+    settings
+        A setting of the extractor, as NAME=NUMBER; may be given again.
+    fields
+        Whether a picture holds two fields of an interlaced camera; found if not said.
+    laser
+        Number of the laser in the rig whose stripe is followed, from 0.
+    seconds
+        Length of the dive [s], unless Ctrl-C or the end of the stream comes first.
+    timeout
+        Longest wait for the stream and for its next picture [s].
+    patience
+        How long a stream that was lost is waited for before the dive counts as over [s].
+    """
+    check_settings(settings)
+    motion.check()
+    with progress_bars():
+        from ..io.rig_toml import load_rig
+        from ..survey.live import run_live
+        from ..survey.live_settings import LiveSettings
+        from .summary import print_summary
+
+        of_dive = load_rig(rig)
+        chosen = LiveSettings(
+            make_follower(motion, of_dive, laser),
+            make_mover(motion, of_dive, laser),
+            make_extractor(extractor, settings),
+            make_method("ray-sheet"),
+            laser=laser,
+            spacing=spacing_mm / 1e3,
+            fields=fields,
+            timeout=timeout,
+            patience=patience,
+        )
+    show = LiveDisplay(seconds)
+    try:
+        project = run_live(
+            source,
+            of_dive,
+            chosen,
+            out=out,
+            rig_file=rig,
+            command=WORDS.get(),
+            executor=work.make(),
+            tell=show.tell,
+            progress=show.progress,
+            until=show.is_over,
+        )
+    finally:
+        show.close()
+    print_summary(project)

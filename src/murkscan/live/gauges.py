@@ -1,0 +1,200 @@
+"""From what was seen lately to what a gauge shows."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..optics import back_project, intersect_rays_with_sheet, refractive_index
+from ..types.background import Attenuation
+from ..types.frame import Frame
+from ..types.laser import Axis
+from ..types.profile import Profile
+from ..types.rig import Rig
+from .status import Disk, Speed, StandOff, StripeStrength, WaterGauge
+
+HIDDEN = 5.0
+"""Standard deviations of a pixel's noise below which a stripe may be lost in it; as the report
+has it."""
+_WEAK = 2.0
+"""How many times that a median stripe should be: every tenth point is weaker by such a factor."""
+_SEEN = 0.02
+"""Share of the scan lines below which a frame shows no stripe; particles make some points."""
+_MARGIN = 0.05
+"""Share of the working range at either end in which the stand-off is not good."""
+_FARTHEST = 20.0
+"""What lies farther was never seen in water [m]."""
+_LOW = 600.0
+"""Time of recording below which room is short [s]."""
+FULL = 200e6
+"""Room that is left to the recording alone [bytes]: a minute of 25 Mbit/s."""
+_ROOM = 2e9
+"""Room below which it is short, whatever the bit rate [bytes]."""
+
+
+@dataclass(frozen=True)
+class Look:
+    """What one frame showed."""
+
+    time: float
+    """Recording time [s]."""
+    points: int
+    num_lines: int
+    """Scan lines that the frame has."""
+    depth: float
+    """Median z of its points in the camera frame [m]; NaN without any."""
+    range: float
+    """Median distance of its points from the camera [m]; NaN without any."""
+    signal: float
+    """Median height of its stripe [grey levels]; NaN without any."""
+
+    @classmethod
+    def of(cls, frame: Frame, profile: Profile, axis: Axis) -> "Look":
+        """Summarise what was found in a frame.
+
+        Args:
+            frame: The frame.
+            profile: Its points.
+            axis: The camera axis along which the laser sits.
+        """
+        lines = frame.image.shape[1 if axis == "y" else 0]
+        if not len(profile):
+            return cls(frame.time, 0, lines, math.nan, math.nan, math.nan)
+        return cls(
+            frame.time,
+            len(profile),
+            lines,
+            float(np.median(profile.points[:, 2])),
+            float(np.median(np.linalg.norm(profile.points, axis=1))),
+            float(np.median(profile.signal)),
+        )
+
+    @property
+    def is_seen(self) -> bool:
+        """Tell whether the frame shows the stripe, and not only a particle or two."""
+        return self.points >= _SEEN * self.num_lines
+
+
+def find_working_range(rig: Rig, laser: int) -> tuple[float, float]:
+    """Compute between which depths the sheet crosses the picture [m], along its middle scan line.
+
+    Args:
+        rig: The rig.
+        laser: Number of the laser.
+    """
+    at = "xy".index(rig.laser(laser).axis)
+    length = rig.camera.size[at]
+    pixels = np.empty((length, 2))
+    pixels[:, 1 - at] = (rig.camera.size[1 - at] - 1) / 2
+    pixels[:, at] = np.arange(length)
+    index = refractive_index(rig.water, rig.wavelength)
+    rays = back_project(rig.camera, pixels, index)
+    depths = intersect_rays_with_sheet(rays, rig.lasers[laser], index)[:, 2]
+    depths = depths[np.isfinite(depths) & (depths > 0)]
+    if len(depths) == 0:
+        return 0.0, 0.0
+    return float(depths.min()), float(min(depths.max(), _FARTHEST))
+
+
+def gauge_stand_off(
+    looks: Sequence[Look], working: tuple[float, float], reach: float | None
+) -> StandOff:
+    """Compare the surface's distance with what the rig shows.
+
+    Args:
+        looks: What the latest frames showed.
+        working: Nearest and farthest depth that the rig shows [m].
+        reach: How far the water lets it see [m]; None where that is not known.
+    """
+    near, far = working
+    far = far if reach is None else max(min(far, reach), near)
+    depths = [look.depth for look in looks if look.points]
+    if not depths:
+        return StandOff(None, near, far)
+    value, margin = float(np.median(depths)), _MARGIN * (far - near)
+    if value < near + margin:
+        return StandOff(value, near, far, "too near")
+    return StandOff(value, near, far, "too far" if value > far - margin else "good")
+
+
+def gauge_speed(value: float | None, rate: float | None, wanted: float) -> Speed:
+    """Compare the camera's speed with what the spacing needs.
+
+    Args:
+        value: How fast it goes [m/s].
+        rate: Frames a second that come [1/s].
+        wanted: Wanted distance from profile to profile [m].
+    """
+    highest = None if rate is None else rate * wanted
+    if value is None or highest is None:
+        return Speed(_milli(value), _milli(highest))
+    return Speed(_milli(value), _milli(highest), "good" if abs(value) <= highest else "too fast")
+
+
+def gauge_stripe(looks: Sequence[Look], noise: float) -> StripeStrength:
+    """Say how well the stripe stands out of the noise.
+
+    Args:
+        looks: What the latest frames showed.
+        noise: Standard deviation of a pixel [grey levels].
+    """
+    if not looks:
+        return StripeStrength(noise=noise)
+    share = float(np.mean([look.points / max(look.num_lines, 1) for look in looks]))
+    signals = [look.signal for look in looks if look.points]
+    signal = float(np.median(signals)) if signals else None
+    if share < _SEEN or signal is None:
+        return StripeStrength(signal, noise, share, "lost")
+    is_weak = signal < _WEAK * HIDDEN * noise
+    return StripeStrength(signal, noise, share, "weak" if is_weak else "good")
+
+
+def gauge_water(attenuation: Attenuation | None, looks: Sequence[Look], noise: float) -> WaterGauge:
+    """Say how far the water lets this stripe be seen.
+
+    Light fades by the attenuation on both ways, and a line of light spreads as its distance.
+
+    Args:
+        attenuation: What the glow told; None where it told nothing.
+        looks: What the latest frames showed.
+        noise: Standard deviation of a pixel [grey levels].
+    """
+    if attenuation is None:
+        return WaterGauge()
+    murk = attenuation.effective, attenuation.low, attenuation.high
+    seen = [look for look in looks if look.points]
+    if not seen or not noise > 0:
+        return WaterGauge(*murk)
+    here = float(np.median([look.range for look in seen]))
+    signal = float(np.median([look.signal for look in seen]))
+    return WaterGauge(*murk, _fade(here, signal / (HIDDEN * noise), attenuation.effective))
+
+
+def _fade(here: float, headroom: float, attenuation: float) -> float:
+    """Find the range at which a stripe of a headroom at a range is at the limit [m]."""
+    low, high = 0.0, _FARTHEST
+    for _ in range(50):
+        middle = (low + high) / 2
+        left = math.log(max(headroom, 1e-9)) - 2 * attenuation * (middle - here)
+        low, high = (middle, high) if left > math.log(middle / here) else (low, middle)
+    return low
+
+
+def gauge_disk(free: int, written: int, seconds: float) -> Disk:
+    """Say how long the room that is left lasts.
+
+    Args:
+        free: Room [bytes].
+        written: What was recorded [bytes] …
+        seconds: … in which time [s].
+    """
+    left = free * seconds / written if written and seconds > 0 else None
+    if free < FULL:
+        return Disk(free, left, "full")
+    is_low = free < _ROOM or (left is not None and left < _LOW)
+    return Disk(free, left, "low" if is_low else "good")
+
+
+def _milli(value: float | None) -> float | None:
+    return None if value is None else 1e3 * value

@@ -1,0 +1,162 @@
+"""Where the camera is while it moves: a speed, or a log that grows."""
+
+import abc
+import math
+from typing import final
+
+import numpy as np
+
+from ..errors import FormatError
+from ..io.growing_table import GrowingTable
+from ..io.pose_reading import PoseConvention, read_poses
+from ..types.arrays import Scalars
+from ..types.pose import Pose
+from ..types.trajectory import Trajectory
+from .constant_speed import ConstantSpeed
+from .constant_step import ConstantStep
+
+_KEPT = 60.0
+"""Time for which poses of a log are kept [s]; frames wait for theirs a second or two."""
+_SINCE_1970 = 1e8
+"""Times of a log above this are of a clock, and below it of a recording [s]."""
+
+
+class AbstractFollower(abc.ABC):
+    """Poses of a camera that is still under way."""
+
+    @abc.abstractmethod
+    def refresh(self) -> None:
+        """Take note of what has come.
+
+        Raises:
+            FormatError: The log is none.
+        """
+
+    @property
+    @abc.abstractmethod
+    def known_until(self) -> float:
+        """Recording time up to which poses are known [s]; -inf where none are."""
+
+    @abc.abstractmethod
+    def follow(self, times: Scalars, pictures: Scalars) -> Trajectory | None:
+        """Compute world_from_camera at those of some times at which it is known.
+
+        Args:
+            times: Recording times [s], strictly increasing.
+            pictures: Number of the recorded picture of each; its second field is at half.
+
+        Returns:
+            The poses; None where not one is known.
+        """
+
+
+@final
+class SteadyFollower(AbstractFollower):
+    """A camera that keeps its speed, or its step."""
+
+    def __init__(self, motion: ConstantSpeed | ConstantStep) -> None:
+        """Follow a motion that needs no log."""
+        self._motion = motion
+        self._start: tuple[float, float] | None = None
+
+    def refresh(self) -> None:
+        """See `AbstractFollower.refresh`."""
+
+    @property
+    def known_until(self) -> float:
+        """See `AbstractFollower.known_until`."""
+        return math.inf
+
+    def follow(self, times: Scalars, pictures: Scalars) -> Trajectory | None:
+        """See `AbstractFollower.follow`; the first time ever asked for is the way's beginning."""
+        if len(times) == 0:
+            return None
+        if self._start is None:
+            self._start = float(times[0]), float(pictures[0])
+        has_start = self._start[0] < times[0]
+        way = self._motion.follow(
+            np.concatenate([[self._start[0]], times]) if has_start else times,
+            np.concatenate([[self._start[1]], pictures]) if has_start else pictures,
+        )
+        return way.at(times)
+
+
+@final
+class LogFollower(AbstractFollower):
+    """A log of poses that another program writes on, line by line."""
+
+    def __init__(
+        self,
+        table: GrowingTable,
+        convention: PoseConvention,
+        vehicle_from_camera: Pose,
+        *,
+        start_time: float,
+        gap: float,
+    ) -> None:
+        """Follow a log.
+
+        Args:
+            table: The file.
+            convention: What it does not say by itself.
+            vehicle_from_camera: The mount.
+            start_time: Log time at which recording time is 0 [s].
+            gap: Longest time between two poses that is bridged [s].
+        """
+        self._table, self._convention, self._mount = table, convention, vehicle_from_camera
+        self._start, self._gap = start_time, gap
+        self._log: Trajectory | None = None
+
+    def refresh(self) -> None:
+        """See `AbstractFollower.refresh`; poses that do not follow the last one are passed over."""
+        table = self._table.read_new()
+        if table is None or not table.rows:
+            return
+        new = read_poses(self._table.path, table, self._convention).log
+        if self._log is None:
+            self._log = new
+            return
+        later = new.times > self._log.times[-1]
+        recent = self._log.times > self._log.times[-1] - _KEPT
+        parts = [_pick(self._log, recent), _pick(new, later)]
+        self._log = Trajectory.concatenate([part for part in parts if part is not None])
+
+    @property
+    def known_until(self) -> float:
+        """See `AbstractFollower.known_until`."""
+        return -math.inf if self._log is None else float(self._log.times[-1]) - self._start
+
+    def follow(self, times: Scalars, pictures: Scalars) -> Trajectory | None:
+        """See `AbstractFollower.follow`."""
+        if self._log is None or len(self._log.times) < 2:
+            return None
+        log, moments = self._log, times + self._start
+        after = np.clip(np.searchsorted(log.times, moments), 1, len(log.times) - 1)
+        covered = (moments >= log.times[0]) & (moments <= log.times[-1])
+        covered &= log.times[after] - log.times[after - 1] <= self._gap
+        if not covered.any():
+            return None
+        poses = log.at(moments[covered]).follow_mount(self._mount)
+        return Trajectory(times[covered], poses.positions, poses.quaternions)
+
+
+def _pick(log: Trajectory, which: np.ndarray) -> Trajectory | None:
+    if not which.any():
+        return None
+    return Trajectory(log.times[which], log.positions[which], log.quaternions[which])
+
+
+def is_clock(table: GrowingTable, convention: PoseConvention) -> bool:
+    """Tell whether a log's times are those of a clock: seconds since 1970, not since its begin.
+
+    Raises:
+        FormatError: It holds no pose yet, so that nobody can tell.
+    """
+    rows = table.read_new()
+    if rows is None or not rows.rows:
+        raise FormatError(
+            f"{table.path} holds no pose yet; start what writes it first, or say with --start-time "
+            "when the recording begins by its clock."
+        )
+    table.rewind()
+    return float(read_poses(table.path, rows, convention).log.times[0]) > _SINCE_1970

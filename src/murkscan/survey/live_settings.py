@@ -1,0 +1,35 @@
+"""How a dive is recorded, shown and scanned."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from ..capture.field_order import Fields
+from ..distribute import AbstractExecutor, Processes
+from ..extract import AbstractExtractor
+from ..motion import AbstractMotion
+from ..motion.following import AbstractFollower
+from ..triangulate import AbstractTriangulation
+
+
+@dataclass(frozen=True, eq=False)
+class LiveSettings:
+    """How a dive is recorded, shown and scanned."""
+
+    follow: Callable[[float], AbstractFollower]
+    """Makes what follows the camera, given when the recording began [s since 1970]."""
+    move: Callable[[float], AbstractMotion]
+    """Makes the motion of the scan, given the same, when the dive is over."""
+    extractor: AbstractExtractor
+    method: AbstractTriangulation
+    laser: int = 0
+    spacing: float = 5e-3
+    """Wanted spacing of the points [m]."""
+    working: tuple[float, float] | None = None
+    """Nearest and farthest depth at which the rig was calibrated [m], if that is known."""
+    fields: Fields = "auto"
+    timeout: float = 10.0
+    """Longest wait for the stream and for its next picture [s]."""
+    patience: float = 60.0
+    """How long a lost stream is waited for [s]."""
+    learner: AbstractExecutor = field(default_factory=lambda: Processes(1))
+    """Who learns while the dive goes on."""

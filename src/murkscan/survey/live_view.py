@@ -1,0 +1,253 @@
+"""Show a dive while it goes on: points, gauges, warnings, the map of gaps, into OUT/live."""
+
+import os
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ..io.images import write_image
+from ..live import (
+    GapMap,
+    LiveFolder,
+    LiveStatus,
+    Look,
+    RecentLooks,
+    draw_picture,
+    find_working_range,
+    gauge_disk,
+    gauge_speed,
+    gauge_stand_off,
+    gauge_stripe,
+    gauge_water,
+    speed_of,
+    thin_points,
+)
+from ..live.status import Covered, Disk, PointCount, Preview, Recorded, State
+from ..motion.following import AbstractFollower
+from ..report import CAUSES, Coverage, EvenSample, GrowingCoverage, Reach, SurfaceDirections
+from ..report.swath_layout import SwathLayout
+from ..types.background import Attenuation, Background
+from ..types.frame_times import FrameTimes
+from ..types.profile import Profile
+from ..types.rig import Rig
+from ..types.trajectory import Trajectory
+from .live_finder import Found, LiveFinder
+
+_PATIENCE = 5.0
+"""How long a frame waits for its pose from a log [s]; then it is left out of the preview."""
+_SAMPLE = 50_000
+"""Points from which it is learnt how far the light goes."""
+_CELLS = 1_000_000
+"""Cells of the map above which they become larger: 25 m² in cells of 5 mm."""
+_LEAST_WAY = 0.1
+"""Way from which it is known where a camera that follows a log is heading [m]."""
+_BUSY = 10.0
+"""The map is drawn anew after so many times as long as that takes: it slows down as it grows."""
+
+
+class LiveView:
+    """Is fed with what the frames showed, and writes what a pilot looks at."""
+
+    def __init__(
+        self,
+        folder: LiveFolder,
+        rig: Rig,
+        follow: Callable[[], AbstractFollower],
+        *,
+        laser: int,
+        spacing: float,
+        working: tuple[float, float] | None = None,
+    ) -> None:
+        """Begin with nothing seen; points of an earlier run of the same dive stay.
+
+        Args:
+            folder: Where to write.
+            rig: The rig.
+            follow: Makes what follows the camera, when its first frame has been looked at.
+            laser: Number of the laser.
+            spacing: Wanted spacing of the points [m].
+            working: Nearest and farthest depth at which the rig was calibrated [m]; None: as far
+                as its sheet crosses the picture.
+        """
+        self._folder, self._rig, self._make_follower = folder, rig, follow
+        self._follower: AbstractFollower | None = None
+        self._laser, self._spacing = laser, spacing
+        self._axis = rig.laser(laser).axis
+        self._working = working or find_working_range(rig, laser)
+        self._recent, self._waiting = RecentLooks(), list[Found]()
+        self._frames = FrameTimes(np.zeros(0, np.uint32), np.zeros(0))
+        self._ranges, self._signals = EvenSample(_SAMPLE), EvenSample(_SAMPLE)
+        self._directions: SurfaceDirections | None = None
+        self._early: list[tuple[Profile, Trajectory]] = []
+        self._coverage = GrowingCoverage(wanted=spacing, cell=spacing, most=_CELLS)
+        self._speed: float | None = None
+        self._covered, self._drawn, self._draw_next = Covered(), 0, 0.0
+        there = folder.find_points()
+        self._points = PointCount(max(there, default=-1) + 1)
+        self._fields = 1
+
+    def add(self, found: Sequence[Found], finder: LiveFinder) -> None:
+        """Take note of frames, in order, and write the points whose poses are known by now."""
+        for one in found:
+            look = Look.of(one.frame, one.profile, self._axis)
+            self._recent.add(look, one.frame.index, one.latency)
+            finder.watch.look(one.frame, look.is_seen)
+            self._fields = one.frame.row_step
+        self._waiting += found
+        if not self._waiting:
+            return
+        self._follower = self._follower or self._make_follower()
+        self._follower.refresh()
+        newest = self._waiting[-1].frame.time
+        until = max(self._follower.known_until, newest - _PATIENCE)
+        ready = [one for one in self._waiting if one.frame.time <= until]
+        self._waiting = self._waiting[len(ready) :]
+        if ready:
+            self._place(
+                ready, self._follower, 0.0 if finder.background is None else finder.background.noise
+            )
+
+    def draw(self, finder: LiveFinder, found: Sequence[Found]) -> None:
+        """Write the newest picture, and the newest one in which the stripe was looked for."""
+        newest = finder.newest
+        if newest is not None and newest.index != self._drawn:
+            self._drawn = newest.index
+            write_image(self._folder.picture, draw_picture(newest))
+        if found:
+            drawn = draw_picture(found[-1].frame, found[-1].stripe.pixels)
+            write_image(self._folder.stripe, drawn)
+
+    def tell(
+        self,
+        state: State,
+        message: str,
+        *,
+        recorded: Recorded,
+        finder: LiveFinder,
+        free: int,
+        warnings: Sequence[str],
+        basis: LiveStatus,
+    ) -> LiveStatus:
+        """Write the status.
+
+        Args:
+            state: What goes on.
+            message: The same in words.
+            recorded: What is on the disk.
+            finder: Who finds the stripe.
+            free: Room on the disk [bytes].
+            warnings: What is wrong beside what the pictures show.
+            basis: What stays the same.
+        """
+        background, looks = finder.background, self._recent.looks
+        noise = 0.0 if background is None else background.noise
+        water = gauge_water(_murk(background), looks, noise)
+        rate = self._recent.rate
+        status = replace(
+            basis,
+            state=state,
+            message=message,
+            updated=time.time(),
+            pid=os.getpid(),
+            recorded=recorded,
+            preview=Preview(
+                finder.looked, finder.dropped + finder.frames.dropped, self._recent.latency, rate
+            ),
+            stand_off=gauge_stand_off(looks, self._working, water.reach),
+            speed=gauge_speed(self._speed, rate, self._spacing),
+            stripe=gauge_stripe(looks, noise),
+            water=water,
+            disk=gauge_disk(free, recorded.bytes, recorded.time) if free >= 0 else Disk(),
+            coverage=self._covered,
+            warnings=(*warnings, *finder.watch.warnings()),
+            points=self._points,
+        )
+        self._folder.save_status(status)
+        return status
+
+    def _place(self, found: Sequence[Found], follower: AbstractFollower, noise: float) -> None:
+        """Carry what was found into the world, and add it to points and map."""
+        times = np.array([one.frame.time for one in found])
+        numbers = np.array([one.frame.index for one in found], np.uint32)
+        way = follower.follow(times, numbers / self._fields)
+        if way is None:
+            return
+        placed = way.has(times)
+        self._frames = FrameTimes(
+            np.append(self._frames.frame, numbers[placed]),
+            np.append(self._frames.time, times[placed]),
+        )
+        self._speed = speed_of(way)
+        profile = Profile.concatenate(
+            [one.profile for one, known in zip(found, placed, strict=True) if known]
+        )
+        if len(profile):
+            self._save_points(profile, way)
+            self._ranges.add(np.linalg.norm(profile.points, axis=1))
+            self._signals.add(profile.signal)
+            self._add_to_map(profile, way, noise)
+
+    def _save_points(self, profile: Profile, way: Trajectory) -> None:
+        world = way.transform(profile.points, profile.time)
+        points = thin_points(profile, world, self._spacing)
+        self._folder.save_points(self._points.parts, points)
+        self._points = PointCount(self._points.parts + 1, self._points.count + len(points))
+
+    def _add_to_map(self, profile: Profile, way: Trajectory, noise: float) -> None:
+        self._early.append((profile, way))
+        if self._directions is None:
+            whole = Trajectory.concatenate([one for _, one in self._early])
+            reach = np.linalg.norm(whole.positions[-1] - whole.positions[0])
+            if reach < _LEAST_WAY:
+                return
+            self._directions = SurfaceDirections.from_trajectory(whole, self._axis)
+        for one, passed in self._early:
+            layout = SwathLayout(
+                self._frames,
+                passed,
+                self._axis,
+                self._rig.camera.size,
+                self._fields,
+                self._directions,
+            )
+            self._coverage.add([one], layout, self._reach(noise))
+        self._early = []
+        if time.monotonic() >= self._draw_next:
+            self.draw_map(noise)
+
+    def draw_map(self, noise: float) -> None:
+        """Write the map of gaps as it is by now."""
+        if self._directions is None:
+            return
+        began = time.monotonic()
+        coverage = self._coverage.as_map(self._directions, self._reach(noise))
+        if coverage is not None:
+            gaps = _as_gaps(coverage)
+            self._folder.save_gaps(gaps)
+            self._covered = Covered(gaps.covered, gaps.missing, gaps.share)
+        now = time.monotonic()
+        self._draw_next = now + max(2.0, _BUSY * (now - began))
+
+    def _reach(self, noise: float) -> Reach:
+        return Reach.from_points(self._ranges.values(), self._signals.values(), noise=noise)
+
+
+def _murk(background: Background | None) -> Attenuation | None:
+    return None if background is None else background.attenuation
+
+
+def _as_gaps(coverage: Coverage) -> GapMap:
+    """Give a coverage the form in which it is shown."""
+    missing = coverage.mapped - coverage.covered
+    return GapMap(
+        coverage.state().astype(np.uint8),  # -1, nothing known, becomes 255
+        CAUSES,
+        coverage.cell,
+        coverage.corner,
+        coverage.directions.along,
+        coverage.directions.across,
+        coverage.covered,
+        missing,
+    )
