@@ -9,8 +9,8 @@ import pytest
 from murkscan.cli.main import run
 
 COMMANDS = [
-    "demo", "simulate", "calibrate", "capture", "scan", "extract", "triangulate", "motion", "cloud",
-    "merge", "mesh", "measure", "view", "report", "plan",
+    "demo", "simulate", "calibrate", "capture", "live", "scan", "extract", "triangulate", "motion",
+    "cloud", "merge", "mesh", "measure", "view", "report", "plan",
 ]  # fmt: skip
 
 

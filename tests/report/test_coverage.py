@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from murkscan.report import CAUSES, Reach, SurfaceDirections, SwathLayout, map_coverage
+from murkscan.report import (
+    CAUSES,
+    GrowingCoverage,
+    Reach,
+    SurfaceDirections,
+    SwathLayout,
+    map_coverage,
+)
 from murkscan.types.frame_times import FrameTimes
 from murkscan.types.profile import Profile
 from murkscan.types.trajectory import Trajectory
@@ -190,3 +197,38 @@ def test_the_map_shows_the_gap_where_it_is():
     # Cells are three spacings wide: the outermost may lie half in the gap.
     assert place.min() == pytest.approx(0.079, abs=coverage.cell)
     assert place.max() == pytest.approx(0.120, abs=coverage.cell)
+
+
+def test_a_map_that_grows_is_that_of_the_whole_scan():
+    profile, trajectory = _scan(lambda frame, line: (frame < 80) | (frame >= 120)), _trajectory()
+    read = np.arange(FRAMES)
+    layout = SwathLayout(
+        FrameTimes(read.astype(np.uint32), read * 0.04),
+        trajectory,
+        "y",
+        (LINES, LINES),
+        1,
+        SurfaceDirections.from_trajectory(trajectory, "y"),
+    )
+    growing = GrowingCoverage(wanted=PITCH, cell=0.005)
+    for first in range(0, FRAMES, 50):
+        part = profile[(profile.frame >= first) & (profile.frame < first + 50)]
+        growing.add([part] if len(part) else [], layout, BRIGHT)
+        growing.as_map(layout.directions, BRIGHT)
+    whole, found = _cover(profile), growing.as_map(layout.directions, BRIGHT)
+    np.testing.assert_allclose(found.total, whole.total, rtol=1e-9)
+    assert found.points.sum() == whole.points.sum()
+
+
+def test_a_map_that_grows_too_large_is_coarsened_and_loses_no_area():
+    fine, coarse = (GrowingCoverage(wanted=PITCH, cell=0.002, most=most) for most in (10**9, 500))
+    trajectory, read = _trajectory(), np.arange(FRAMES)
+    directions = SurfaceDirections.from_trajectory(trajectory, "y")
+    frames = FrameTimes(read.astype(np.uint32), read * 0.04)
+    layout = SwathLayout(frames, trajectory, "y", (LINES, LINES), 1, directions)
+    for growing in (fine, coarse):
+        growing.add([_scan()], layout, BRIGHT)
+    maps = [growing.as_map(directions, BRIGHT) for growing in (fine, coarse)]
+    assert (maps[0].cell, maps[1].cell) == (0.002, 0.008)
+    assert maps[1].covered == pytest.approx(maps[0].covered, rel=1e-9)
+    assert (maps[1].points > 0).sum() <= 500

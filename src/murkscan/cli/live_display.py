@@ -117,10 +117,10 @@ def _stripe(status: "LiveStatus") -> str:
 
 def _water(status: "LiveStatus") -> str:
     water = status.water
-    if water.low is None or water.high is None:
+    if water.attenuation is None:
         return "–"
-    reach = "" if water.reach is None else f", seen up to {water.reach:.2f} m"
-    return f"attenuation {water.low:.2g} to {water.high:.2g} per metre{reach}"
+    reach = "" if water.reach is None else f", shows the stripe up to {water.reach:.2f} m"
+    return f"light fades by {water.attenuation:.2g} per metre{reach}"
 
 
 def _coverage(status: "LiveStatus") -> str:

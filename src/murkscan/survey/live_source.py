@@ -46,6 +46,8 @@ class LiveSource(abc.ABC):
         """What is on the disk."""
         self.failure: MurkscanError | None = None
         """Why it ended, if by an error."""
+        self.start = 0.0
+        """Time of the first picture [s]."""
         self._stopping, self._last = threading.Event(), time.monotonic()
 
     @property
@@ -179,10 +181,10 @@ class ReplayedSource(LiveSource):
     def __init__(self, recording: AbstractRecording) -> None:
         """Take a recording with times."""
         super().__init__()
-        self._recording = recording
+        self._recording, self.start = recording, recording.span[0]
 
     def _give(self, finder: LiveFinder) -> None:
-        began, start = time.monotonic(), self._recording.span[0]
+        began, start = time.monotonic(), self.start
         each = self._recording.fields_per_picture
         for frame in self._recording.frames():
             due = began + frame.time - start

@@ -5,6 +5,8 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
+
 from ..capture import DiveFolder
 from ..errors import MurkscanError
 from ..live import LiveFolder, LiveStatus
@@ -63,7 +65,7 @@ class LiveStage:
             spacing=settings.spacing,
             working=settings.working,
         )
-        self._ticks, self._failure = 0, ""
+        self._ticks, self._failure, self._is_over = 0, "", False
         self._found: list[Found] = []
 
     def tick(self) -> None:
@@ -97,6 +99,7 @@ class LiveStage:
 
     def finish(self) -> None:
         """Show the rest, and the map as it is at the end."""
+        self._is_over = True
         for _ in range(2):
             self._ticks = -1
             self.tick()
@@ -104,7 +107,10 @@ class LiveStage:
             self._view.draw_map(0.0 if background is None else background.noise)
 
     def _follow(self) -> AbstractFollower:
-        return self._settings.follow(self._began())
+        follower = self._settings.follow(self._began())
+        # The way begins where the recording does, as that of the scan will.
+        follower.follow(np.array([self.pictures.start]), np.zeros(1))
+        return follower
 
     def _began(self) -> float:
         """Tell when the recording began; a replayed one has no clock."""
@@ -118,6 +124,8 @@ class LiveStage:
         recorded, silence = self.pictures.recorded, self.pictures.silence
         if recorded.pictures == 0:
             return "waiting", "Waiting for the first picture."
+        if self._is_over:
+            return "live", "The dive is over, and all of it is recorded."
         if silence:
             return "lost", (
                 f"No picture has come for {silence:.0f} s; the stream is waited for, and what came "

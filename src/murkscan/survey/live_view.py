@@ -239,15 +239,23 @@ def _murk(background: Background | None) -> Attenuation | None:
 
 
 def _as_gaps(coverage: Coverage) -> GapMap:
-    """Give a coverage the form in which it is shown."""
-    missing = coverage.mapped - coverage.covered
+    """Give a coverage the form in which it is shown.
+
+    What the preview had no time for counts as covered where both its neighbours are: a gap of the
+    preview is none of the dive.
+    """
+    unseen = CAUSES.index("unreadable") + 1
+    areas = coverage.areas.copy()
+    areas[0] += areas[unseen]
+    areas[unseen] = 0.0
+    covered = coverage.covered + coverage.missing["unreadable"]
     return GapMap(
-        coverage.state().astype(np.uint8),  # -1, nothing known, becomes 255
+        replace(coverage, areas=areas).state().astype(np.uint8),  # -1, nothing, becomes 255
         CAUSES,
         coverage.cell,
         coverage.corner,
         coverage.directions.along,
         coverage.directions.across,
-        coverage.covered,
-        missing,
+        covered,
+        coverage.mapped - covered,
     )
