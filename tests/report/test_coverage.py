@@ -210,12 +210,12 @@ def test_a_map_that_grows_is_that_of_the_whole_scan():
         1,
         SurfaceDirections.from_trajectory(trajectory, "y"),
     )
-    growing = GrowingCoverage(wanted=PITCH, cell=0.005)
+    growing = GrowingCoverage(wanted=PITCH, cell=0.005, most=10**9)
     for first in range(0, FRAMES, 50):
         part = profile[(profile.frame >= first) & (profile.frame < first + 50)]
         growing.add([part] if len(part) else [], layout, BRIGHT)
-        growing.as_map(layout.directions, BRIGHT)
-    whole, found = _cover(profile), growing.as_map(layout.directions, BRIGHT)
+        growing.as_map()
+    whole, found = _cover(profile), growing.as_map()
     np.testing.assert_allclose(found.total, whole.total, rtol=1e-9)
     assert found.points.sum() == whole.points.sum()
 
@@ -228,7 +228,7 @@ def test_a_map_that_grows_too_large_is_coarsened_and_loses_no_area():
     layout = SwathLayout(frames, trajectory, "y", (LINES, LINES), 1, directions)
     for growing in (fine, coarse):
         growing.add([_scan()], layout, BRIGHT)
-    maps = [growing.as_map(directions, BRIGHT) for growing in (fine, coarse)]
+    maps = [growing.as_map() for growing in (fine, coarse)]
     assert (maps[0].cell, maps[1].cell) == (0.002, 0.008)
     assert maps[1].covered == pytest.approx(maps[0].covered, rel=1e-9)
     assert (maps[1].points > 0).sum() <= 500

@@ -9,7 +9,7 @@ from cyclopts.types import PositiveFloat
 from ..ui.choices import ExtractorName, check_settings, make_extractor, make_method
 from .live_display import LiveDisplay
 from .live_motion import make_follower, make_mover
-from .options import ExecutorFlags, MotionFlags, Settings
+from .options import ExecutorFlags, Lasers, MotionFlags, Settings
 from .paths import RigFile
 from .progress import progress_bars
 from .typed import WORDS
@@ -33,7 +33,7 @@ def live(
     extractor: ExtractorName = "murk",
     settings: Settings = (),
     fields: Literal["auto", "progressive", "top-first", "bottom-first"] = "auto",
-    laser: int = 0,
+    laser: Lasers = (),
     seconds: PositiveFloat | None = None,
     timeout: _Wait = 10.0,
     patience: _Patience = 60.0,
@@ -62,7 +62,8 @@ def live(
     fields
         Whether a picture holds two fields of an interlaced camera; found if not said.
     laser
-        Number of the laser in the rig whose stripe is followed, from 0.
+        Number of a laser in the rig whose stripe is followed, from 0; may be given again. All of
+        them unless given; the preview follows the first.
     seconds
         Length of the dive [s], unless Ctrl-C or the end of the stream comes first.
     timeout
@@ -80,11 +81,11 @@ def live(
 
         of_dive = load_rig(rig)
         chosen = LiveSettings(
-            make_follower(motion, of_dive, laser),
-            make_mover(motion, of_dive, laser),
+            make_follower(motion, of_dive, min(laser, default=0)),
+            make_mover(motion, of_dive, min(laser, default=0)),
             make_extractor(extractor, settings),
             make_method("ray-sheet"),
-            laser=laser,
+            lasers=laser,
             spacing=spacing_mm / 1e3,
             fields=fields,
             timeout=timeout,

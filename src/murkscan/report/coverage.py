@@ -131,14 +131,13 @@ class _Sheet:
 class GrowingCoverage:
     """The map of a scan that is not at its end: parts are added in the order of their frames."""
 
-    def __init__(self, *, wanted: float, cell: float, most: int | None = None) -> None:
+    def __init__(self, *, wanted: float, cell: float, most: int) -> None:
         """Begin with nothing.
 
         Args:
             wanted: Wanted spacing of the points [m].
             cell: Edge of the map's cells [m].
-            most: Cells above which they are made twice as large, to bound the memory; None: the
-                map shows no more than the first 1200 of a side.
+            most: Cells above which they are made twice as large, to bound the memory.
         """
         self._wanted, self._most, self._cell = wanted, most, cell
         self._sheet: _Sheet | None = None
@@ -163,14 +162,11 @@ class GrowingCoverage:
         if sheet is None or not sheet.sums:
             return None
         sums = add_up(sheet.sums)
-        while self._most is not None and is_too_large(sums, self._most):
+        while is_too_large(sums, self._most):
             sums, sheet.cell = add_up([sums.coarser()]), 2 * sheet.cell
         sheet.sums = [sums]
-        longest = {} if self._most is None else {"longest": LONGEST}
-        cells = gather_cells([sums], edge=sheet.cell, **longest)
+        cells = gather_cells([sums], edge=sheet.cell, longest=LONGEST)
         if cells is None:
             return None
         directions = sheet.layout.directions
-        return Coverage(
-            directions, self._wanted, sheet.hole, sheet.cell, *cells, reach=sheet.reach
-        )
+        return Coverage(directions, self._wanted, sheet.hole, sheet.cell, *cells, reach=sheet.reach)

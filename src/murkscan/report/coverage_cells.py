@@ -79,10 +79,9 @@ def add_up(parts: Sequence[CellSums]) -> CellSums:
     cells = np.concatenate([np.zeros((0, 2), np.int64), *(part.cell for part in parts)])
     areas = np.concatenate([np.zeros((0, _CLASSES)), *(part.areas for part in parts)])
     points = np.concatenate([np.zeros(0), *(part.points for part in parts)])
-    places, which = np.unique(cells, axis=0, return_inverse=True)
-    which = which.ravel()
-    sums = [np.bincount(which, column, len(places)) for column in (points, *areas.T)]
-    return CellSums(places, sums[0], np.stack(sums[1:], axis=1).reshape(-1, _CLASSES))
+    keys, which = np.unique(_as_key(cells[:, 0], cells[:, 1]), return_inverse=True)
+    sums = [np.bincount(which, column, len(keys)) for column in (points, *areas.T)]
+    return CellSums(_as_cells(keys), sums[0], np.stack(sums[1:], axis=1).reshape(-1, _CLASSES))
 
 
 _Map = tuple[tuple[float, float], Int[np.ndarray, "h w"], Float[np.ndarray, "k h w"], Scalars]

@@ -207,7 +207,7 @@ def _scan(
         out=project.root,
         extractor=settings.extractor,
         method=settings.method,
-        laser=settings.laser,
+        lasers=settings.lasers,
         spacing=settings.spacing,
         rig_file=rig_file,
         command=project.command,

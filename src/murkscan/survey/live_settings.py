@@ -21,7 +21,9 @@ class LiveSettings:
     """Makes the motion of the scan, given the same, when the dive is over."""
     extractor: AbstractExtractor
     method: AbstractTriangulation
-    laser: int = 0
+    lasers: tuple[int, ...] = ()
+    """Numbers of the lasers whose stripes the scan follows, all of the rig unless given; the
+    preview follows the first of them."""
     spacing: float = 5e-3
     """Wanted spacing of the points [m]."""
     working: tuple[float, float] | None = None
@@ -33,3 +35,8 @@ class LiveSettings:
     """How long a lost stream is waited for [s]."""
     learner: AbstractExecutor = field(default_factory=lambda: Processes(1))
     """Who learns while the dive goes on."""
+
+    @property
+    def laser(self) -> int:
+        """Number of the laser whose stripe the preview follows."""
+        return min(self.lasers, default=0)

@@ -222,7 +222,7 @@ class LiveView:
         if self._directions is None:
             return
         began = time.monotonic()
-        coverage = self._coverage.as_map(self._directions, self._reach(noise))
+        coverage = self._coverage.as_map()
         if coverage is not None:
             gaps = _as_gaps(coverage)
             self._folder.save_gaps(gaps)
