@@ -4,12 +4,14 @@ import numpy as np
 import pytest
 
 from murkscan.errors import FormatError, InputError
+from murkscan.io.acceptance_toml import parse_acceptance
 from murkscan.optics.sensor import Sensor
 from murkscan.simulate import Simulator, list_scenes, load_scene, parse_scene, read_scene
 
 NAMES = [
     "plane", "plane-c3", "plane-hd", "plane-c3-hd", "hull", "hull-c3", "hull-hd", "hull-c3-hd",
-    "sphere-c6", "stairs-c0.3-hd", "chessboard", "chessboard-laser", "demo",
+    "sphere-c6", "ballbar-c1.5", "plate-c0.3-hd", "step", "stairs-c0.3-hd", "chessboard",
+    "chessboard-laser", "demo",
 ]  # fmt: skip
 
 
@@ -27,7 +29,21 @@ def test_the_list_names_each_scene_with_a_line():
     assert all(len(line) > 20 for line in scenes.values())
 
 
+def test_artefacts_are_as_the_acceptance_test_is_told():
+    test = parse_acceptance(load_scene("ballbar").acceptance, "ballbar")
+    places = [body.world_from_object.translation for body in load_scene("ballbar").bodies[:2]]
+    for ball, place in zip(test.balls, places, strict=True):
+        assert np.linalg.norm(np.array(ball.near) - place) == pytest.approx(ball.diameter / 2)
+    assert np.linalg.norm(places[1] - places[0]) == pytest.approx(test.bars[0].length)
+    step = parse_acceptance(load_scene("step").acceptance, "step").steps[0]
+    assert step.first[2] - step.second[2] == pytest.approx(step.height)
+    plate = parse_acceptance(load_scene("plate").acceptance, "plate").plates[0]
+    middle = load_scene("plate").bodies[0].world_from_object.translation
+    assert np.linalg.norm(np.array(plate.near) - middle) < 1e-6
+
+
 BAD = [
+    ("format = 1", 'format = 1\nacceptance = "none.toml"', "no file .*none.toml"),
     ("attenuation_per_m = 1.5", "attenuation_per_m = -0.5", "water.attenuation_per_m must not"),
     ("attenuation_per_m = 1.5", "attenuation_per_m = 900", "lower water.attenuation_per_m"),
     ("attenuation_per_m = 1.5", "attenuation_per_m = 1.5\nmean_cosine = 0.9", "water.mean_cosine"),

@@ -65,6 +65,19 @@ def test_out_and_what_may_come_in_either_order(scanned):
     assert (scanned / "measure" / "other.json").exists()
 
 
+def test_an_acceptance_test_says_with_what_and_how_fast_it_was_scanned(scanned, tmp_path):
+    (tmp_path / "plate.toml").write_text(
+        f'format = 1\nname = "P"\n[[plate]]\nname = "P"\nnear_m = [{middle(scanned)}]\n'
+        "within_mm = 60",
+        "utf-8",
+    )
+    assert run(["accept", str(scanned), "--test", str(tmp_path / "plate.toml")]) == 0
+    told = json.loads((scanned / "accept" / "accept.json").read_text("utf-8"))["scanned"]
+    assert set(told) == {"recording", "rig", "water", "speed", "scanned"}
+    assert "rig.toml" in told["rig"]
+    assert "mm" in told["speed"]
+
+
 def test_a_section_is_drawn_in_every_format(scanned):
     arguments = ("--point-m", middle(scanned), "--normal", "0,1,0", "--formats", "svg,csv,dxf")
     assert measure(scanned, "section", *arguments) == 0

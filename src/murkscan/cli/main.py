@@ -26,6 +26,7 @@ _COMMANDS = {
     "georeference": "Lay a scan on control points, for exports in a coordinate system.",
     "mesh": "Make a surface from the cloud.",
     "measure": "Take measures of a scan, each with its uncertainty.",
+    "accept": "Hold a scan of a ball bar, a plate or a step against limits, on a page to sign.",
     "view": "Draw the surface, and write a page to turn, cut and measure it on.",
     "report": "Write a page on how the scan went.",
     "check": "Compare every file of a scan with what was written.",

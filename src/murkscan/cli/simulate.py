@@ -28,7 +28,8 @@ def simulate(
     scene
         A scene file, or the name of a scene that ships with murkscan, such as hull-c3.
     out
-        Folder for frames/ or recording.mkv, rig.toml, poses.csv and truth/.
+        Folder for frames/ or recording.mkv, rig.toml, poses.csv and truth/; of an artefact's scene
+        acceptance.toml, too.
     show_list
         Show the scenes that ship with murkscan.
     """
@@ -53,24 +54,27 @@ def simulate(
     tell("poses", str(out / "poses.csv"))
     if made.num_centres:
         tell("truth", f"{made.num_centres:,} true centres of the stripe: {out / 'truth'}")
-    tell("next", _next_step(made_of, made.recording, out))
+    tell("next", *_next_steps(made_of, made.recording, out))
 
 
-def _next_step(scene: "Scene", recording: Path, out: Path) -> str:
+def _next_steps(scene: "Scene", recording: Path, out: Path) -> list[str]:
     """Say what the recording can be used for."""
     from ..simulate.textures.checkered import Checkered
 
     if boards := [b.texture for b in scene.bodies if isinstance(b.texture, Checkered)]:
         board = boards[0]
         step = "laser" if scene.rig.lasers else "port" if scene.rig.camera.port else "camera"
-        return (
+        return [
             f"murkscan calibrate {step} {quote(str(recording))} --board "
             f"{board.columns}x{board.rows} --square-mm {1e3 * board.square:g} --rig RIG"
-        )
-    return (
+        ]
+    steps = [
         f"murkscan scan {quote(str(recording))} --rig {quote(str(out / 'rig.toml'))} --poses "
         f"{quote(str(out / 'poses.csv'))} --out SCAN"
-    )
+    ]
+    if scene.acceptance:
+        steps.append(f"murkscan accept SCAN --test {quote(str(out / 'acceptance.toml'))}")
+    return steps
 
 
 def _print_scenes() -> None:

@@ -1,5 +1,8 @@
 """Take measures of a scan, each with its uncertainty."""
 
+from .ball import FoundBall as FoundBall
+from .ball import find_ball as find_ball
+from .ball import measure_spacing as measure_spacing
 from .dents import DentSearch as DentSearch
 from .dents import find_dents as find_dents
 from .departure import measure_departure as measure_departure
@@ -15,6 +18,8 @@ from .fits import measure_cylinder as measure_cylinder
 from .fits import measure_plane as measure_plane
 from .fits import measure_sphere as measure_sphere
 from .fits import trust_plane as trust_plane
+from .form import measure_flatness as measure_flatness
+from .form import measure_form as measure_form
 from .histogram import draw_histogram as draw_histogram
 from .lengths import require_dent_sizes as require_dent_sizes
 from .sample import Sample as Sample

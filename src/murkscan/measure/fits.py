@@ -14,6 +14,7 @@ from ..geometry.sphere_fit import fit_sphere
 from ..types.measurement import Measurement
 from ..types.plane import Plane, span_plane
 from ..types.quantity import Quantity
+from ..types.sphere import Sphere
 from .sample import Sample
 from .trust import FitUncertainty, LinearMap, trust_fit
 
@@ -66,15 +67,27 @@ def measure_sphere(sample: Sample) -> Measurement:
         Degenerate: The points lie in a plane, or cover too little of the sphere.
         NotConverged: No sphere settles.
     """
-    _require_profiles(sample, "sphere")
-    fit = fit_sphere(sample.cloud.points, sight=sample.sight)
+    fit, trust = trust_sphere(sample)
     sphere = fit.shape
     values = {"radius": sphere.radius, "diameter": 2 * sphere.radius}
     values |= dict(zip(("x", "y", "z"), sphere.centre.tolist(), strict=True))
     how = np.zeros((5, fit.slopes.shape[1]))
     how[0, 3], how[1, 3] = 1, 2
     how[2:, :3] = np.eye(3)
-    return _tell("sphere", fit, trust_fit(fit, sample), values, ("m",) * 5, how)
+    return _tell("sphere", fit, trust, values, ("m",) * 5, how)
+
+
+def trust_sphere(sample: Sample) -> tuple[ShapeFit[Sphere], FitUncertainty]:
+    """Fit a sphere, and find how far to trust its centre's x, y and z, and its radius.
+
+    Raises:
+        NotEnoughData: Fewer than five points, or three profiles.
+        Degenerate: The points lie in a plane, or cover too little of the sphere.
+        NotConverged: No sphere settles.
+    """
+    _require_profiles(sample, "sphere")
+    fit = fit_sphere(sample.cloud.points, sight=sample.sight)
+    return fit, trust_fit(fit, sample)
 
 
 def measure_cylinder(sample: Sample) -> Measurement:

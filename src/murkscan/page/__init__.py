@@ -9,6 +9,7 @@ from .content import Gallery as Gallery
 from .content import Note as Note
 from .content import Picture as Picture
 from .content import Section as Section
+from .content import Signatures as Signatures
 from .content import Table as Table
 from .figures import ACCENT as ACCENT
 from .figures import FAINT as FAINT

@@ -84,7 +84,17 @@ class Code:
     lines: Sequence[str]
 
 
-Block = Note | Facts | Table | Figure | Gallery | Code
+@final
+@dataclass(frozen=True)
+class Signatures:
+    """Lines to be signed on paper, side by side."""
+
+    kind: ClassVar[str] = "signatures"
+    lines: Sequence[str]
+    """What stands below each line."""
+
+
+Block = Note | Facts | Table | Figure | Gallery | Code | Signatures
 
 
 @final

@@ -7,6 +7,7 @@ from .files import StageFiles as StageFiles
 from .folder import Project as Project
 from .georeferenced import is_georeferenced as is_georeferenced
 from .georeferenced import load_georeference as load_georeference
+from .kinds import ACCEPT as ACCEPT
 from .kinds import CLOUD as CLOUD
 from .kinds import EXTRACT as EXTRACT
 from .kinds import GEOREFERENCE as GEOREFERENCE
@@ -20,6 +21,7 @@ from .kinds import TRIANGULATE as TRIANGULATE
 from .kinds import VIEW as VIEW
 from .kinds import Kind as Kind
 from .lock import hold as hold
+from .results import AcceptResult as AcceptResult
 from .results import AlignmentResult as AlignmentResult
 from .results import CloudResult as CloudResult
 from .results import ExtractResult as ExtractResult

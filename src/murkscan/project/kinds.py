@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 from .results import (
+    AcceptResult,
     CloudResult,
     ExtractResult,
     GeoreferenceResult,
@@ -44,6 +45,8 @@ MEASURE = Kind("measure", MeasureResult, meaning=1)
 """Not in order: each measurement is one of its own, told from others in the folder by its name."""
 GEOREFERENCE = Kind("georeference", GeoreferenceResult, meaning=1)
 """Not in order: what is exported after it lies in its grid."""
+ACCEPT = Kind("accept", AcceptResult, meaning=1)
+"""Not in order either: a scan may be held against artefacts once its cloud is there."""
 SIMULATE = Kind("simulate", SimulateResult, meaning=1)
 """In a folder of its own, that of the recording."""
 

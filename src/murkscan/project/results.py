@@ -229,6 +229,14 @@ class MeasureResult:
 
 
 @dataclass(frozen=True)
+class AcceptResult:
+    """What an acceptance test came to; the numbers stand in a file of their own."""
+
+    decision: str
+    """passed, failed, undecided, or no limit stated."""
+
+
+@dataclass(frozen=True)
 class ControlResult:
     """How well the model meets one control point."""
 

@@ -56,6 +56,8 @@ class Scene:
     """What the vehicle's own log is like; None: there is none."""
     seed: int = 0
     """Where noise and particles start."""
+    acceptance: str = ""
+    """What `murkscan accept` is told of its artefacts, as the text of a file; empty: nothing."""
 
     def __post_init__(self) -> None:
         """Refuse a scene without light or without frames."""

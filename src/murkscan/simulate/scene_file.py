@@ -11,6 +11,7 @@ import tomlkit
 from pydantic import ValidationError
 
 from ..errors import FormatError, InputError
+from ..io.acceptance_toml import load_acceptance
 from ..io.poses import load_poses
 from ..io.rig_toml import as_tables, parse_rig, read_tables
 from ..io.toml_files import parse_toml
@@ -101,9 +102,9 @@ def as_standalone(text: str, rig: Rig, folder: Path) -> str:
     """
     document = tomlkit.parse(text)
     document["rig"] = as_tables(rig)
-    if "poses" in document["motion"]:
-        path = folder / document["motion"]["poses"]
-        document["motion"]["poses"] = str(path.resolve())
+    for table, key in ((document["motion"], "poses"), (document, "acceptance")):
+        if key in table:
+            table[key] = str((folder / table[key]).resolve())
     bodies = document.get("object", [])
     for body in [bodies] if isinstance(bodies, dict) else bodies:
         if body["mesh"] not in SHAPES:
@@ -160,7 +161,14 @@ def _as_scene(table: SceneTable, name: str, folder: Path) -> Scene:
         if table.motion.navigation is None
         else table.motion.navigation.as_navigation(),
         seed=table.seed,
+        acceptance="" if table.acceptance is None else _read_acceptance(folder / table.acceptance),
     )
+
+
+def _read_acceptance(path: Path) -> str:
+    """Read what is known of the artefacts, and refuse what `murkscan accept` would."""
+    load_acceptance(path)
+    return path.read_text("utf-8-sig")
 
 
 def _as_rig(table: SceneTable, name: str, folder: Path) -> Rig:

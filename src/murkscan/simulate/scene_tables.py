@@ -219,6 +219,7 @@ class SceneTable(Table):
 
     format: Literal[1]
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
+    acceptance: str | None = None
     object: ObjectTable | list[ObjectTable] = Field(default_factory=list)
     surface: SurfaceTable = SurfaceTable()
     water: WaterTable = WaterTable()

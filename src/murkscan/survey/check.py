@@ -8,6 +8,7 @@ from typing import Any
 from ..errors import MurkscanError
 from ..io.checksum import mark_file
 from ..project import (
+    ACCEPT,
     GEOREFERENCE,
     MEASURE,
     SIMULATE,
@@ -54,7 +55,7 @@ def check_project(project: Project, *, progress: Progress = silent) -> list[Stag
     if _is_simulation(project.root):
         return [_check_folder(project, SIMULATE, project.root, [""])]
     project.load_scan()
-    checks, kinds = [], (*STAGES, GEOREFERENCE, MEASURE)
+    checks, kinds = [], (*STAGES, GEOREFERENCE, MEASURE, ACCEPT)
     for done, kind in enumerate(kinds):
         progress("check", done, len(kinds))
         folder = project.root / kind.word

@@ -8,11 +8,11 @@ from ..cloud import thin_clouds
 from ..distribute import AbstractExecutor, Threads
 from ..errors import InputError
 from ..io.cloud_files import check_cloud_suffix, writing_cloud_file
-from ..project import CLOUD, GEOREFERENCE, MEASURE, STAGES, Project, load_georeference
+from ..project import ACCEPT, CLOUD, GEOREFERENCE, MEASURE, STAGES, Project, load_georeference
 from ..types.cloud import PointCloud
 from .progress import Progress, silent
 
-_FOLDERS = tuple(kind.word for kind in (*STAGES, GEOREFERENCE, MEASURE))
+_FOLDERS = tuple(kind.word for kind in (*STAGES, GEOREFERENCE, MEASURE, ACCEPT))
 """Folders in which only stages write."""
 
 

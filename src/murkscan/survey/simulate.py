@@ -72,8 +72,9 @@ def simulate_recording(
 ) -> SimulatedRecording:
     """Write frames/ or recording.mkv, rig.toml, poses.csv, and truth/.
 
-    poses.csv holds the true poses at the frames' own times, of the vehicle where the rig has a
-    mount; navigation.csv what the vehicle's log says, where the scene has one.
+    acceptance.toml says what is known of the scene's artefacts, where it has some. poses.csv holds
+    the true poses at the frames' own times, of the vehicle where the rig has a mount;
+    navigation.csv what the vehicle's log says, where the scene has one.
 
     A simulation that is done with the same scene is skipped; one that was stopped is made anew.
 
@@ -165,6 +166,9 @@ def _draw_ahead(simulator: Simulator) -> Iterator[SimulatedFrame]:
 def _write_rig_and_trajectory(scene: Scene, files: StageFiles) -> None:
     with files.making("rig.toml") as path:
         save_rig(path, scene.rig)
+    if scene.acceptance:
+        with files.making("acceptance.toml") as path:
+            save_text(path, scene.acceptance)
     with files.making("poses.csv") as path:
         save_poses(path, _as_logged(scene, scene.trajectory.at(scene.times)))
     if scene.navigation is not None:
