@@ -20,10 +20,15 @@ def test_every_link_leads_somewhere(page):
 
 
 def test_the_readme_s_python_runs_as_printed(hull, tmp_path):
-    """Its recording is a folder here; a path is a path."""
+    """Its recording is a folder here, of forty frames; a path is a path."""
     code = re.search(r"```python\n(.*?)```", (ROOT / "README.md").read_text("utf-8"), re.S)[1]
     shutil.copy(hull / "rig.toml", tmp_path)
-    shutil.copytree(hull / "frames", tmp_path / "dive.mkv")
+    shown = slice(70, 110)
+    (tmp_path / "dive.mkv").mkdir()
+    for picture in sorted((hull / "frames").glob("*.png"))[shown]:
+        shutil.copy(picture, tmp_path / "dive.mkv")
+    head, *times = (hull / "frames/times.csv").read_text().splitlines()
+    (tmp_path / "dive.mkv/times.csv").write_text("\n".join([head, *times[shown]]))
     done = subprocess.run(
         [sys.executable, "-c", code + "\nassert len(cloud) and len(mesh.faces)"],
         cwd=tmp_path,

@@ -15,6 +15,8 @@ from murkscan.simulate import parse_scene, read_scene, simulate_frames
 from murkscan.survey.check import check_project
 from murkscan.survey.simulate import simulate_recording
 
+from ..scenes import smaller
+
 COLUMNS = [
     "frame", "laser", "branch", "kind", "u", "v", "x_m", "y_m", "z_m", "signal", "snr", "crlb_px",
 ]  # fmt: skip
@@ -26,7 +28,7 @@ def _scene(changes=()):
     for old, new in changes:
         assert old in text
         text = text.replace(old, new)
-    return parse_scene(text, name, folder), text
+    return smaller(parse_scene(text, name, folder), 2), text
 
 
 @pytest.fixture(scope="module")
@@ -40,12 +42,12 @@ def test_a_recording_has_what_the_contract_says(written):
     scene, made, out = written
     assert made.num_frames == 12  # fields are counted
     assert len(list((out / "frames").glob("*.png"))) == 6
-    assert load_rig(out / "rig.toml").camera.size == (720, 576)
+    assert load_rig(out / "rig.toml").camera.size == (360, 288)
     table = pq.read_table(out / "truth/stripes.parquet")
     assert table.column_names == COLUMNS
     assert set(table["kind"].to_pylist()) == {"direct"}
     truth = load_true_stripe(out / "truth/stripes.parquet")
-    assert len(truth) == made.num_centres > 6000
+    assert len(truth) == made.num_centres > 3000
     np.testing.assert_array_equal(np.unique(truth.frame), np.arange(12))
     assert len(load_mesh(out / "truth/mesh.ply").faces) == len(scene.surroundings.mesh.faces)
     np.testing.assert_allclose(load_poses(out / "poses.csv").times, scene.times, atol=1e-12)
