@@ -32,7 +32,8 @@ def cloud(
     out
         Folder of the scan, with finished triangulate and motion stages.
     export
-        Write the cloud to this file, too: .ply, .las, .laz, .e57, .xyz or .csv; may be given again.
+        Write the cloud to this file, too: .ply, .las, .laz, .copc.laz, .e57, .xyz or
+        .csv; may be given again.
     voxel_mm
         Thin what is exported to one point a voxel of this edge [mm]: means, weighted by sigma.
     min_posterior

@@ -8,6 +8,7 @@ from pathlib import Path
 from ..errors import InputError
 from ..types.cloud import PointCloud
 from .cloud_columns import BLOCK
+from .copc import writing_copc
 from .e57 import iterate_e57, writing_e57
 from .las import iterate_las, writing_las
 from .ply_foreign import iterate_ply, writing_shown_ply
@@ -36,6 +37,7 @@ def writing_cloud_file(path: Path, *, wkt: str = "") -> _Writing:
     The file appears whole when the context ends, or not at all. XYZ keeps positions and normals
     only. In PLY the names of the scalar fields begin with `scalar_`, as CloudCompare has them, and
     `signal` stands there a second time as `quality`, the one field that MeshLab shows.
+    A name that ends in .copc.laz is written as COPC, in the order of an octree.
 
     Args:
         path: The file; its suffix is one of .ply, .las, .laz, .e57, .xyz and .csv.
@@ -47,6 +49,8 @@ def writing_cloud_file(path: Path, *, wkt: str = "") -> _Writing:
     """
     check_cloud_suffix(path)
     suffix = path.suffix.lower()
+    if path.name.lower().endswith(".copc.laz"):
+        return writing_copc(path, wkt)
     if suffix in _PLACED_WRITERS:
         return _PLACED_WRITERS[suffix](path, wkt)
     return _WRITERS[suffix](path)

@@ -43,15 +43,9 @@ def writing_las(path: Path, wkt: str = "") -> Iterator[Callable[[PointCloud], No
     """
     import laspy
 
-    header = laspy.LasHeader(point_format=_POINT_FORMAT, version="1.4")
-    header.generating_software = "murkscan"
-    header.scales = np.full(3, _STEP)
-    if wkt:
-        header.vlrs.append(laspy.vlrs.known.WktCoordinateSystemVlr(wkt))
-        header.global_encoding.wkt = True
-    header.add_extra_dims([laspy.ExtraBytesParams(name, COLUMNS[name]) for name in _EXTRA])
+    header = make_las_header(laspy, wkt)
     is_placed = False
-    with replacing(path) as aside, _blaming_the_disk():
+    with replacing(path) as aside, blaming_the_disk():
         writer = laspy.open(aside, mode="w", header=header, do_compress=_is_laz(path))
         with writer:
 
@@ -59,14 +53,26 @@ def writing_las(path: Path, wkt: str = "") -> Iterator[Callable[[PointCloud], No
                 nonlocal is_placed
                 if len(cloud) == 0:
                     return
-                _require_finite(cloud, path)
+                require_finite(cloud, path)
                 if not is_placed:
                     # laspy writes the header anew when it closes, with this.
                     writer.header.offsets = np.round(cloud.points.mean(axis=0))
                     is_placed = True
-                writer.write_points(_as_points(laspy, writer.header, cloud, path))
+                writer.write_points(as_las_points(laspy, writer.header, cloud, path))
 
             yield write
+
+
+def make_las_header(laspy: Any, wkt: str) -> Any:
+    """Make the header of a cloud's file, with the extra dimensions that hold its columns."""
+    header = laspy.LasHeader(point_format=_POINT_FORMAT, version="1.4")
+    header.generating_software = "murkscan"
+    header.scales = np.full(3, _STEP)
+    header.global_encoding.wkt = True  # always, with these points (LAS 1.4 R15, table 4)
+    if wkt:
+        header.vlrs.append(laspy.vlrs.known.WktCoordinateSystemVlr(wkt))
+    header.add_extra_dims([laspy.ExtraBytesParams(name, COLUMNS[name]) for name in _EXTRA])
+    return header
 
 
 def iterate_las(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud]:
@@ -98,7 +104,7 @@ def iterate_las(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud]:
 
 
 @contextmanager
-def _blaming_the_disk() -> Iterator[None]:
+def blaming_the_disk() -> Iterator[None]:
     """Turn what lazrs says of a failed write into what Python says."""
     import lazrs
 
@@ -136,7 +142,12 @@ def _is_laz(path: Path) -> bool:
     return path.suffix.lower() == ".laz"
 
 
-def _as_points(laspy: Any, header: Any, cloud: PointCloud, path: Path) -> Any:
+def as_las_points(laspy: Any, header: Any, cloud: PointCloud, path: Path) -> Any:
+    """Give points as LAS has them.
+
+    Raises:
+        InputError: They lie too far from the header's offsets; `path` is what it calls the file.
+    """
     steps = np.abs(cloud.points - header.offsets).max() / _STEP
     if steps > np.iinfo(np.int32).max:
         raise InputError(
@@ -167,7 +178,12 @@ def _as_cloud(points: Any) -> PointCloud:
     return from_columns(columns)
 
 
-def _require_finite(cloud: PointCloud, path: Path) -> None:
+def require_finite(cloud: PointCloud, path: Path) -> None:
+    """Refuse points that are not finite.
+
+    Raises:
+        InputError: Some are; `path` is what it calls the file.
+    """
     broken = len(cloud) - int(np.isfinite(cloud.points).all(axis=1).sum())
     if broken:
         raise InputError(f"{path} cannot hold the {broken} points that are not finite.")
