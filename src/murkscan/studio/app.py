@@ -23,6 +23,7 @@ from starlette.types import ASGIApp
 from ..errors import FormatError, InputError, MurkscanError
 from .boards import Boards, tell_drawn
 from .commands import make_command
+from .dives import pack_points, tell_dive
 from .finds import look_around
 from .guard import Guard
 from .jobs import Jobs
@@ -37,6 +38,8 @@ _LARGEST_UPLOAD = 4_000_000_000
 _HOSTS = ("127.0.0.1", "localhost", "[::1]")
 _FORECASTS = 1
 """Plans that are computed at once; others wait."""
+_DIGITS = 9
+"""Digits of a part's number, at most."""
 Answer = Callable[[Request], Awaitable[Response]]
 
 
@@ -65,6 +68,8 @@ def make_app(
         Route("/api/scan", _said(studio.scan)),
         Route("/api/boards", _said(studio.boards)),
         Route("/api/drawn", _said(studio.drawn)),
+        Route("/api/dive", _said(studio.dive)),
+        Route("/api/points", _said(studio.points)),
         Route("/api/command", _said(studio.command), methods=["POST"]),
         Route("/api/jobs", _said(studio.start), methods=["POST"]),
         Route("/api/jobs/{name}/stop", _said(studio.stop), methods=["POST"]),
@@ -132,6 +137,21 @@ class _Studio:
         asked = request.query_params
         task = partial(tell_drawn, self._sandbox, asked.get("rig", ""), asked.get("step", ""))
         return await to_thread.run_sync(task)
+
+    async def dive(self, request: Request) -> Any:
+        """Say what a running dive shows."""
+        name = request.query_params.get("name", "")
+        return await to_thread.run_sync(tell_dive, self._sandbox, name)
+
+    async def points(self, request: Request) -> Response:
+        """Give the points of a dive's preview from a part on."""
+        first = request.query_params.get("first", "0")
+        if not first.isdecimal() or len(first) > _DIGITS:
+            raise InputError("Parts of a preview are numbered from 0.")
+        task = partial(pack_points, self._sandbox, request.query_params.get("name", ""), int(first))
+        packed, following = await to_thread.run_sync(task)
+        kind = "application/octet-stream"
+        return Response(packed, media_type=kind, headers={"x-next": str(following)})
 
     async def command(self, request: Request) -> Any:
         """Write a command as it would be typed, without running it."""

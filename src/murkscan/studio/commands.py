@@ -4,6 +4,7 @@ The commands themselves judge values; here it is held that no path leaves the fo
 nothing but these flags is given.
 """
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from shlex import quote
@@ -14,6 +15,8 @@ from .sandbox import Sandbox
 
 Kind = Literal["text", "switch", "in", "out", "in or text"]
 """A value as it is, a flag without one, a path that is there, one that may be made, or either."""
+_ADDRESS = re.compile(r"(udp|rtp|rtsps?|tcp|srt|https?)://\S+|udp:\d+|/dev/video\d+|\d+")
+"""A stream, a port at which a vehicle's log comes in, or a camera: all that is no file."""
 _LONGEST = 2000
 """Letters of a value."""
 
@@ -77,6 +80,10 @@ FORMS: dict[str, _Form] = {
         {"source": "in"}, _BOARD | _flags("margin-mm laser length-mm length-sigma-mm from-m to-m")
     ),
     "capture": _Form({"source": "in or text", "out": "out"}, _flags("seconds timeout-s")),
+    "live": _Form(
+        {"source": "in or text"},
+        _flags("rig", "in") | _flags("out", "out") | _flags("spacing-mm") | _MOTION,
+    ),
     "scan": _Form(
         {"recording": "in"},
         _flags("rig", "in") | _flags("out", "out") | _MOTION
@@ -176,26 +183,9 @@ def _place(sandbox: Sandbox, kind: Kind, value: str) -> str:
     if kind == "text":
         return value
     if kind == "in or text":
-        if "://" in value or value.isdigit() or value.startswith(("/dev/video", "udp:")):
-            return _address(value)
+        if _ADDRESS.fullmatch(value):
+            return value
         kind = "in"
     path = sandbox.existing(value) if kind == "in" else sandbox.resolve(value)
     name = sandbox.name(path)
     return f"./{name}" if name.startswith("-") else name
-
-
-def _address(value: str) -> str:
-    """Refuse an address that means a file, which may lie anywhere."""
-    scheme = value.partition(":")[0].lower()
-    if "://" in value and scheme not in (
-        "udp",
-        "rtp",
-        "rtsp",
-        "rtsps",
-        "tcp",
-        "srt",
-        "http",
-        "https",
-    ):
-        raise InputError(f"{value!r} is no address of a stream; give udp://, rtp:// or rtsp://.")
-    return value

@@ -24,6 +24,8 @@ class Found:
     rigs: list[str] = field(default_factory=list)
     scans: list[str] = field(default_factory=list)
     """Folders with a scan, finished or not."""
+    dives: list[str] = field(default_factory=list)
+    """Folders into which a dive is shown while it goes on, or was."""
     recordings: list[str] = field(default_factory=list)
     """Videos, and folders of pictures."""
     photos: list[str] = field(default_factory=list)
@@ -42,12 +44,14 @@ def look_around(sandbox: Sandbox) -> Found:
         if seen > _MOST:
             found.is_cut = True
             break
+        if (folder / "live" / "status.json").exists():
+            found.dives.append(sandbox.name(folder))
         if "scan.json" in files:
             found.scans.append(sandbox.name(folder))
             folders.clear()
             continue
         _sort_in(found, sandbox, folder, files)
-    for names in (found.rigs, found.scans, found.recordings, found.photos, found.logs):
+    for names in (found.rigs, found.scans, found.dives, found.recordings, found.photos, found.logs):
         names.sort()
     return found
 
@@ -55,6 +59,8 @@ def look_around(sandbox: Sandbox) -> Found:
 def _walk(root: Path) -> Iterator[tuple[Path, list[str], list[str]]]:
     for folder, folders, files in os.walk(root):
         deep = len(Path(folder).relative_to(root).parts)
+        if "status.json" in files and Path(folder).name == "live":
+            continue  # what a dive shows of itself is no recording
         folders[:] = sorted(
             name for name in folders if not name.startswith(".") and deep < _DEEPEST
         )

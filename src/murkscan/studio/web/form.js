@@ -70,6 +70,7 @@ export function commandForm({ page, command, fields, run = "Begin", values: fixe
   element.read = read;
   element.set = (key, value) => { inputs.get(key).value = value; write(); };
   element.input = (key) => inputs.get(key);
+  element.suggest = (key, names) => inputs.get(key).list?.replaceChildren(...names.map((name) => make("option", { value: name })));
   queueMicrotask(write);
   return element;
 }
@@ -92,10 +93,19 @@ export function fill(select, options, value) {
   return select;
 }
 
-function row({ label, unit, hint }, element) {
+function row({ label, unit, hint, list }, element) {
   return make("label", { className: element.type === "checkbox" ? "check" : "" },
     make("span", { textContent: unit ? `${label} [${unit}]` : label }), element,
+    list ? suggestions(element) : null,
     hint ? make("small", { textContent: hint }) : null);
+}
+
+// Names that are offered while one is typed; others may be typed, too.
+let lists = 0;
+function suggestions(element) {
+  const list = make("datalist", { id: `names-${lists += 1}` });
+  element.setAttribute("list", list.id);
+  return list;
 }
 
 // A button that brings files into the folder; each answer is one sentence.

@@ -4,6 +4,7 @@ import { addressOf, ask, listen, order, question, refresh } from "./ask.js";
 import { button, keep, make, note, table } from "./dom.js";
 import { commandForm, fill } from "./form.js";
 import { measureForms } from "./measures.js";
+import { motionFields, motionOf, showMotion } from "./motion.js";
 
 export function lookPage(page, [named]) {
   const chosen = make("select", { "aria-label": "Scan" });
@@ -133,9 +134,7 @@ function scanForm() {
     fields: [
       { key: "recording", label: "Recording", kind: "select" },
       { key: "rig", label: "Rig", kind: "select" },
-      { key: "how", label: "How the camera moved", kind: "select", local: true, options: [["speed-mm-s", "at a speed [mm/s]"], ["step-mm", "by a step a picture [mm]"], ["poses", "by a log of poses"], ["navigation", "by the vehicle’s instruments"]] },
-      { key: "number", label: "Speed or step", kind: "number", local: true },
-      { key: "log", label: "Log", kind: "select", local: true },
+      ...motionFields,
       { key: "out", label: "Folder for the scan", value: "scan" },
       { key: "fps", label: "Pictures a second", kind: "number", hint: "of a folder without times.csv", more: true },
       { key: "extractor", label: "How the stripe is found", kind: "select", options: [["", "murk"], "gray-gravity", "gaussian", "steger", "threshold-skeleton"], more: true },
@@ -143,15 +142,10 @@ function scanForm() {
       { key: "start-time", label: "When the video began", hint: "seconds or ISO 8601, by the log’s clock", more: true },
       { key: "time-offset-s", label: "Added to recording times", unit: "s", kind: "number", more: true },
     ],
-    onchange: ({ how }) => show(how),
+    onchange: ({ how }) => showMotion(form, how),
   });
-  form.also = ({ how, number, log }) => ({ [how]: how === "poses" || how === "navigation" ? log : number });
-  function show(how) {
-    const byLog = how === "poses" || how === "navigation";
-    form.input("number").closest("label").hidden = byLog;
-    form.input("log").closest("label").hidden = !byLog;
-  }
-  show("speed-mm-s");
+  form.also = motionOf;
+  showMotion(form, "speed-mm-s");
   let last = "";
   return {
     element: make("section", { className: "card" }, make("h2", { textContent: "A new scan" }), form),
@@ -161,7 +155,7 @@ function scanForm() {
       last = JSON.stringify([recordings, rigs, logs]);
       fill(form.input("recording"), recordings);
       fill(form.input("rig"), rigs);
-      fill(form.input("log"), logs);
+      form.suggest("log", logs);
       form.write();
     },
   };

@@ -4,6 +4,7 @@ import { watch } from "./ask.js";
 import { make } from "./dom.js";
 import { calibratePage } from "./calibrate.js";
 import { showJobs } from "./job.js";
+import { livePage } from "./live.js";
 import { lookPage } from "./look.js";
 import { planPage } from "./plan.js";
 import { rigPage } from "./rig.js";
@@ -12,6 +13,7 @@ import { startTheme } from "./theme.js";
 const PAGES = {
   rig: ["Rig", rigPage],
   calibrate: ["Calibrate", calibratePage],
+  live: ["Live", livePage],
   look: ["Look", lookPage],
   plan: ["Plan", planPage],
 };

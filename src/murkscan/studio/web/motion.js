@@ -1,0 +1,16 @@
+// How the camera moved: the fields that a scan and a dive share.
+
+export const motionFields = [
+  { key: "how", label: "How the camera moves", kind: "select", local: true, options: [["speed-mm-s", "at a speed [mm/s]"], ["step-mm", "by a step a picture [mm]"], ["poses", "by a log of poses"], ["navigation", "by the vehicle’s instruments"]] },
+  { key: "number", label: "Speed or step", kind: "number", local: true },
+  { key: "log", label: "Log", local: true, placeholder: "nav.csv, or udp:14550", list: [] },
+];
+
+export const motionOf = ({ how, number, log }) => ({ [how]: how === "poses" || how === "navigation" ? log : number });
+
+// Shows the field that the way of moving needs.
+export function showMotion(form, how) {
+  const isLog = how === "poses" || how === "navigation";
+  form.input("number").closest("label").hidden = isLog;
+  form.input("log").closest("label").hidden = !isLog;
+}
