@@ -99,7 +99,7 @@ def test_a_plan_follows_its_sliders(opened):
     assert faults == []
 
 
-@pytest.mark.parametrize("name", ["rig", "calibrate", "look", "plan"])
+@pytest.mark.parametrize("name", ["rig", "calibrate", "live", "look", "plan"])
 def test_pages_fit_a_phone_and_show_names_as_they_are(opened, folder, name):
     page, faults, _ = opened
     hostile = "<img src=x onerror=window.broken=1>.toml"

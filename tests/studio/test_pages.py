@@ -10,6 +10,7 @@ from murkscan import load_rig
 from murkscan.cli.main import app
 from murkscan.cli.progress import progress_bars
 from murkscan.io.images import write_image
+from murkscan.live import LiveFolder, LivePoints, LiveStatus
 from murkscan.optics.medium import Medium
 from murkscan.plan import Conditions, attenuation_from_visibility, forecast
 from murkscan.studio.commands import FORMS
@@ -116,6 +117,27 @@ def test_boards_are_found_in_a_folder_as_photographs_come(folder, ask):
     assert second["reason"] == "shows no chessboard"
     assert "Need at least 4 views" in told["so_far"]["verdict"]
     assert ask.get("api/boards", params={"folder": "boards", "board": "9"}).status_code == 400
+
+
+def test_a_dive_is_shown_as_its_files_say(folder, ask):
+    nothing = ask.get("api/dive", params={"name": "dive"}).json()
+    assert (nothing["status"], nothing["parts"]) == (None, 0)
+    live = LiveFolder(folder / "dive" / "live")
+    live.save_status(LiveStatus(state="live", warnings=("The stripe is lost.",)))
+    rows = np.arange(24, dtype=np.float32).reshape(6, 4)
+    for part, some in enumerate((rows[:2], rows[2:])):
+        frame = np.zeros(len(some), np.uint32)
+        live.save_points(part, LivePoints(some[:, :3], some[:, 3], frame))
+    told = ask.get("api/dive", params={"name": "dive"}).json()
+    assert told["status"]["warnings"] == ["The stripe is lost."]
+    assert told["parts"] == 2
+    assert "dive" in ask.get("api/folder").json()["found"]["dives"]
+    for first, expected in ((0, rows), (1, rows[2:]), (2, rows[:0])):
+        answer = ask.get("api/points", params={"name": "dive", "first": first})
+        assert answer.headers["x-next"] == "2"
+        np.testing.assert_array_equal(np.frombuffer(answer.content, "<f4"), expected.ravel())
+    for wrong in ("-1", "x", "9" * 30):
+        assert ask.get("api/points", params={"name": "dive", "first": wrong}).status_code == 400
 
 
 def test_a_board_has_the_size_it_says():

@@ -1,5 +1,6 @@
 """The questions that pages ask, and who answers them."""
 
+import mimetypes
 import os
 import shutil
 from collections.abc import Awaitable, Callable
@@ -38,6 +39,8 @@ _LARGEST_UPLOAD = 4_000_000_000
 _HOSTS = ("127.0.0.1", "localhost", "[::1]")
 _FORECASTS = 1
 """Plans that are computed at once; others wait."""
+_SMALL = 2_000_000
+"""Bytes up to which a file is read whole before it is sent."""
 _DIGITS = 9
 """Digits of a part's number, at most."""
 Answer = Callable[[Request], Awaitable[Response]]
@@ -174,7 +177,11 @@ class _Studio:
         path = self._sandbox.existing(request.path_params["name"])
         if not path.is_file():
             raise InputError(f"{request.path_params['name']!r} is no file.")
-        return FileResponse(path)
+        if path.stat().st_size > _SMALL:
+            return FileResponse(path)
+        # Read at once: pictures of a dive are replaced while they are sent.
+        kind = mimetypes.guess_type(path.name)[0] or "application/octet-stream"
+        return Response(await to_thread.run_sync(path.read_bytes), media_type=kind)
 
     async def _asked(self, request: Request) -> Any:
         try:

@@ -17,10 +17,12 @@ _MOST_PARTS = 60
 def tell_dive(sandbox: Sandbox, name: str) -> dict[str, Any]:
     """Say what a dive says of itself, and which pictures there are, by the time of their change.
 
+    Of one that has only just begun there is nothing yet.
+
     Raises:
-        InputError: It does not lie in the folder.
+        InputError: It would not lie in the folder.
     """
-    live = LiveFolder(sandbox.existing(name) / "live")
+    live = LiveFolder(sandbox.resolve(name) / "live")
     files = {"picture": live.picture, "stripe": live.stripe, "gaps": live.root / "gaps.png"}
     told: dict[str, Any] = {"status": None, "map": None, "parts": len(live.find_points())}
     # A file that is just being renamed into place is asked for again by the page.

@@ -9,7 +9,7 @@ export function gauges(status) {
   const { stand_off: off, speed, stripe, water, disk, coverage, preview, recorded } = status;
   return [
     gauge("Stand-off", off.value_m === null ? "–" : `${off.value_m.toFixed(2)} m`, off.state, scale(off.value_m, off.near_m, off.far_m)),
-    gauge("Speed", speed.value_mm_s === null ? "–" : `${speed.value_mm_s.toFixed(0)} mm/s`, speed.state, scale(speed.value_mm_s, 0, speed.highest_mm_s),
+    gauge("Speed", speed.value_mm_s === null ? "–" : `${speed.value_mm_s.toFixed(0)} mm/s`, speed.state, scale(speed.value_mm_s, 0, speed.highest_mm_s, 0),
       speed.highest_mm_s === null ? "" : `at most ${speed.highest_mm_s.toFixed(0)} mm/s`),
     gauge("Stripe", stripe.signal === null ? "–" : `${stripe.signal.toFixed(0)} grey`, stripe.state, null,
       stripe.share === null ? "" : `in ${(100 * stripe.share).toFixed(0)} % of the lines, noise ${(stripe.noise ?? 0).toFixed(1)}`),
@@ -41,10 +41,10 @@ function gauge(name, value, state, bar, more = "") {
     make("strong", { textContent: value }), bar, make("small", { textContent: more }));
 }
 
-// A needle over what is good; the ends are half as much beyond it again.
-function scale(value, low, high) {
+// A needle over what is good; the ends are half as much beyond it again, unless the first is given.
+function scale(value, low, high, from = low - (high - low) / 2) {
   if (value === null || low === null || high === null || !(high > low)) return null;
-  const from = low - (high - low) / 2, span = 2 * (high - low);
+  const span = high + (high - low) / 2 - from;
   const percent = (x) => `${(100 * Math.min(Math.max((x - from) / span, 0), 1)).toFixed(1)}%`;
   const good = make("i", { className: "range" }), needle = make("i", { className: "needle" });
   Object.assign(good.style, { left: percent(low), right: `calc(100% - ${percent(high)})` });

@@ -26,8 +26,8 @@ function describe(job) {
       isRunning
         ? button("Stop", async () => { await order(`api/jobs/${job.name}/stop`, {}); refresh(); }, { className: "stop" })
         : button("×", () => { closed = job.name; refresh(); }, { className: "quiet", title: "Hide", "aria-label": "Hide" })),
-    isRunning ? progress(job.progress) : null,
-    job.sentence && job.state !== "done" ? make("p", { className: "sentence", textContent: job.sentence }) : null,
+    isRunning && (job.progress || job.page !== "live") ? progress(job.progress) : null,
+    job.sentence && job.state !== "done" && !isRunning ? make("p", { className: "sentence", textContent: job.sentence }) : null,
     job.said || job.errors ? make("details", { open: false }, make("summary", { textContent: "What it said" }),
       make("pre", { textContent: job.said + job.errors })) : null,
   ];

@@ -23,7 +23,7 @@ export function livePage(page) {
   const dive = make("select", { "aria-label": "Dive" });
   const start = startForm();
   const keys = make("small", { className: "muted keys", textContent: "Keys: S picture or stripe · F whole screen · E end the dive (twice)" });
-  page.append(head, alarms, scene, dials, make("div", { className: "row" }, end, keys), start.element,
+  page.append(head, make("div", { className: "row ending" }, end, keys), alarms, scene, dials, start.element,
     make("div", { className: "toolbar" }, make("label", {}, make("span", { textContent: "Show the dive" }), dive)));
 
   let isGone = false, shown = "", next = 0, mapped = "", timer = 0, isPlain = false, running = null, isLoading = false;

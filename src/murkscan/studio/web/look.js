@@ -13,10 +13,10 @@ export function lookPage(page, [named]) {
   const measured = make("section", { className: "card" });
   const forms = make("section", { className: "card" });
   const stages = make("div", {});
-  const fresh = scanForm();
+  const fresh = scanForm(), merged = mergeForm();
   page.append(make("h1", { textContent: "Look and measure" }),
     make("div", { className: "toolbar" }, make("label", {}, make("span", { textContent: "Scan" }), chosen)),
-    none, model, measured, forms, stages, fresh.element);
+    none, model, measured, forms, stages, fresh.element, merged.element);
   chosen.onchange = () => { location.hash = `#look/${encodeURIComponent(chosen.value)}`; };
 
   async function load() {
@@ -58,6 +58,7 @@ export function lookPage(page, [named]) {
     const { scans } = state.found;
     none.hidden = scans.length > 0;
     fresh.sync(state);
+    merged.sync(state);
     const key = JSON.stringify([scans, state.jobs.map((job) => [job.name, job.state, job.progress?.[0]])]);
     if (key === last) return;
     last = key;
@@ -156,6 +157,38 @@ function scanForm() {
       fill(form.input("recording"), recordings);
       fill(form.input("rig"), rigs);
       form.suggest("log", logs);
+      form.write();
+    },
+  };
+}
+
+// Several passes of one object laid on another, as one cloud; then its surface and its page.
+function mergeForm() {
+  const places = ["first", "second", "third", "fourth"];
+  const form = commandForm({
+    page: "look", command: "merge", run: "Merge",
+    fields: [
+      ...places.map((key, k) => ({ key, label: `Pass ${k + 1}`, kind: "select" })),
+      { key: "out", label: "Folder for the whole", value: "merged" },
+      { key: "as-logged", label: "Leave the passes where their logs put them", kind: "switch", more: true },
+    ],
+  });
+  const element = make("section", { className: "card" }, make("h2", { textContent: "Merge passes" }), form,
+    make("small", { className: "muted", textContent: "Then mesh, view and report make its surface, its page and its report:" }));
+  const after = ["mesh", "view", "report"].map((command) => commandForm({
+    page: "look", command, run: command, fields: [{ key: "out", label: "Folder of the whole", kind: "select" }],
+  }));
+  element.append(make("div", { className: "cards" }, after));
+  let last = "";
+  return {
+    element,
+    sync({ found: { scans } }) {
+      element.hidden = scans.length < 2;
+      if (JSON.stringify(scans) === last) return;
+      last = JSON.stringify(scans);
+      places.forEach((key, k) => fill(form.input(key), k < 2 ? scans : [["", "–"], ...scans]));
+      if (scans.length > 1) form.input("second").value = scans[1];
+      for (const one of after) { fill(one.input("out"), scans); one.write(); }
       form.write();
     },
   };

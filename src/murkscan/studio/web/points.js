@@ -13,7 +13,7 @@ const FRAGMENT = `#version 300 es
 precision mediump float; in float shade; out vec4 colour;
 const vec3 stops[5] = vec3[5](vec3(.99,.91,.14), vec3(.37,.79,.38), vec3(.13,.57,.55), vec3(.23,.32,.55), vec3(.27,.05,.35));
 void main() { float at = shade * 3.999; int k = int(at); colour = vec4(mix(stops[k], stops[k + 1], at - float(k)), 1.0); }`;
-const ROW = 4;
+const ROW = 4, SAMPLE = 2000;
 
 export function pointView(canvas) {
   const gl = canvas.getContext("webgl2", { antialias: false, preserveDrawingBuffer: false });
@@ -50,6 +50,14 @@ export function pointView(canvas) {
     draw();
   }
 
+  // Where most depths lie: a few strays would take the colours from all others.
+  function depths() {
+    const step = Math.max(1, Math.floor(count / SAMPLE)) * ROW, some = [];
+    for (let i = 2; i < count * ROW; i += step) some.push(data[i]);
+    some.sort((a, b) => a - b);
+    return [0.02, 0.98].map((share) => some[Math.floor(share * (some.length - 1))]);
+  }
+
   function clear() {
     count = 0;
     low = [Infinity, Infinity, Infinity];
@@ -79,7 +87,7 @@ export function pointView(canvas) {
     gl.uniformMatrix3fv(place.turn, false, turn);
     gl.uniform3fv(place.middle, middle);
     gl.uniform2f(place.scale, most / width, most / height);
-    gl.uniform2f(place.depths, low[2], high[2]);
+    gl.uniform2f(place.depths, ...depths());
     gl.uniform1f(place.size, Math.max(1.5 * ratio, Math.min(6 * ratio, 1.2 * Math.sqrt(width * height / count))));
     gl.drawArrays(gl.POINTS, 0, count);
     canvas.dataset.points = count;
