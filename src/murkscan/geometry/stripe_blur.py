@@ -1,14 +1,23 @@
 """How a blurred stripe misses a surface that curves along it.
 
 A lens's blur mixes, into each scan line, light of its neighbours. On a straight stripe they
-balance; on one that bends they pull the centre to the hollow side, and where it leans into the
-surface they pull it to the brighter neighbour. For Lambert's law, blur of variance s² [m²] along
+balance; on one that bends they pull the centre to the hollow side, and where it slopes in the
+picture they pull it to the brighter neighbour. For Lambert's law, blur of variance s² [m²] along
 the stripe, and a surface of curvature k whose normal leans by an angle f from the line of sight,
 along the stripe, the centre's distance from the surface is
 
-    s² k (tan² f - 1) / 2,
+    s² k (tan² f - 2 tan f tan a - 1) / 2,
 
-towards the camera where it is positive: 0 at 45 degrees, three times its size in front at 63.
+towards the camera where it is positive. Here a is the angle of the line of sight itself from the
+plane across the stripe, and f counts towards the side to which a does: in the middle of the picture
+the distance is 0 at 45 degrees, three times its size in front at 63. At its sides the stripe does
+not slope where the surface faces the camera, but where it is parallel to the picture, and the
+distances are even about that place.
+
+It follows from the inverse depth w along u = x / z. Seen through the blur it changes by s_u² (w'' / 2
++ w' I' / I); with w'' = - k cos³ a / cos³ f, w' = - cos² a (tan f - tan a) / z, the light's
+I' / I = - k z tan f cos a / cos f and s = s_u z cos a, the formula is that change along the line of
+sight, times cos f.
 """
 
 from dataclasses import dataclass
@@ -45,7 +54,8 @@ class Sight:
 def blur_slopes(shape: AnyShape, points: Points, sight: Sight) -> Scalars:
     """Give the change of each point's distance from a shape with the variance of the blur [1/m]."""
     bend = shape.curvature(sight.along) * _towards_camera(shape, points, sight)
-    return bend * (_lean(shape, points, sight) - 1) / 2
+    lean = _lean(shape, points, sight)
+    return bend * (lean**2 - 2 * lean * _slant(sight) - 1) / 2
 
 
 def is_readable(shape: AnyShape, points: Points, sight: Sight) -> Mask:
@@ -61,13 +71,22 @@ def is_readable(shape: AnyShape, points: Points, sight: Sight) -> Mask:
 
 
 def _lean(shape: AnyShape, points: Points, sight: Sight) -> Scalars:
-    """Give tan² of the angle between normal and line of sight, along the stripe."""
+    """Give tan of the angle from the line of sight back to the camera to the normal.
+
+    It counts along the stripe; of a hollow shape the normal is the one that faces the camera.
+    """
     normals = shape.normals(points)
     facing = _facing(shape, points, sight)
     sideways = sight.along - np.einsum("ij,ij->i", sight.along, sight.rays)[:, None] * sight.rays
     sideways /= np.linalg.norm(sideways, axis=1, keepdims=True)
     slope = np.einsum("ij,ij->i", normals, sideways)
-    return (slope / np.where(np.abs(facing) < 1e-9, 1e-9, facing)) ** 2
+    return -slope / np.where(np.abs(facing) < 1e-9, 1e-9, facing)
+
+
+def _slant(sight: Sight) -> Scalars:
+    """Give tan of the angle between each line of sight and the plane across the stripe."""
+    along = np.einsum("ij,ij->i", sight.along, sight.rays)
+    return along / np.sqrt(1 - along**2)
 
 
 def _towards_camera(shape: AnyShape, points: Points, sight: Sight) -> Scalars:
