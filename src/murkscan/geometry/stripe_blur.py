@@ -14,8 +14,8 @@ the distance is 0 at 45 degrees, three times its size in front at 63. At its sid
 not slope where the surface faces the camera, but where it is parallel to the picture, and the
 distances are even about that place.
 
-It follows from the inverse depth w along u = x / z. Seen through the blur it changes by s_u² (w'' / 2
-+ w' I' / I); with w'' = - k cos³ a / cos³ f, w' = - cos² a (tan f - tan a) / z, the light's
+It follows from the inverse depth w along u = x / z, which the blur changes by s_u² (w'' / 2 +
+w' I' / I). With w'' = - k cos³ a / cos³ f, w' = - cos² a (tan f - tan a) / z, the light's
 I' / I = - k z tan f cos a / cos f and s = s_u z cos a, the formula is that change along the line of
 sight, times cos f.
 """
