@@ -7,6 +7,7 @@ import pytest
 from scipy.ndimage import gaussian_filter
 
 from murkscan.extract import Murk
+from murkscan.extract.clutter import bound_by_stays, usual_stays
 from murkscan.types.camera import Camera
 from murkscan.types.frame import Frame
 from murkscan.types.laser import Laser
@@ -76,6 +77,49 @@ def test_a_still_stripe_that_flickers_is_found_beside_a_ghost_that_does_not():
     off = np.abs(_errors(stripes, lambda _: 100.0 + 0 * LINES))
     assert np.sum(off < 1.5) > 0.95 * 24 * LENGTH
     assert np.mean(off < 1.5) > 0.98
+
+
+def test_of_two_lines_that_stand_still_in_a_scan_line_the_steadier_is_a_ghost():
+    """Glow that passes behind a ghost lets it flicker, but less than paint lets the stripe."""
+    rng = np.random.default_rng(2)
+    paint = np.clip(1.0 + 0.35 * rng.standard_normal((24, LENGTH // 12)), 0.3, None)
+    glow = 1.0 + 0.15 * rng.standard_normal((24, 1))
+    ghost = np.where(LINES < 80, _line(40.0 + 0.02 * LINES, 60.0), 0.0)
+    heights, stripe = np.repeat(paint, 12, axis=1), _line(100.0 + 0 * LINES, 40.0)
+    light = [8.0 + g * ghost + h * stripe for g, h in zip(glow, heights, strict=True)]
+    off = np.abs(_errors(_extract(_film(light)), lambda _: 100.0 + 0 * LINES))
+    assert np.sum(off < 1.5) > 0.95 * 24 * LENGTH
+    assert np.mean(off < 1.5) > 0.98
+
+
+def _marks(rng):
+    """Draw short faint pieces of lines, as an encoder's blocks make them."""
+    picture = np.zeros((HEIGHT, LENGTH))
+    for _ in range(60):
+        row, column = rng.integers(3, HEIGHT - 3), rng.integers(0, LENGTH - 7)
+        picture[row - 1 : row + 2, column : column + 7] += 3.0
+    return picture
+
+
+@pytest.mark.parametrize("many", [0.0, 1.0])
+def test_it_is_learnt_that_clutter_stays_where_it_does(many):
+    """Two thirds of the frames have the marks of one of two sets, the others their own."""
+    rng = np.random.default_rng(4)
+    sets = [_marks(rng), _marks(rng)]
+    marks = [sets[i // 2 % 2] if i % 3 else _marks(rng) for i in range(24)]
+    light = [8.0 + _line(20.0 + 4.0 * i + 0 * LINES, 60.0) + many * m for i, m in enumerate(marks)]
+    stays = Murk().learn(_film(light), RIG).stays
+    assert (stays[1:4] > 0.5).all() if many else (stays[1:4] < 0.1).all()
+
+
+def test_what_frames_say_is_bounded_by_the_clutter_that_stays():
+    said, heights = np.array([[7.2, -10.0, 0.0]]), np.full((1, 3), 5.0)
+    few, many = np.full(len(usual_stays()), 1e-6), np.full(len(usual_stays()), 0.4)
+    assert bound_by_stays(said, heights, few) == pytest.approx(said, abs=2e-3)
+    bounded = bound_by_stays(said, heights, many)[0]
+    assert bounded[0] < -np.log(0.4)
+    assert bounded[1] == pytest.approx(-10.0 - np.log(0.6), abs=1e-3)
+    assert bounded[2] == 0.0
 
 
 def test_with_the_laser_off_dirt_is_no_stripe():

@@ -1,20 +1,22 @@
 """What a recording shows beside its stripe: how strongly filters answer it, and how often."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from jaxtyping import Float
 
 from .._kernels.matched_filter import score_pixels
-from ..types.arrays import Scalars
+from ..types.arrays import Indices, Scalars
 from ..types.background import Noise
 from .matched_filter import MatchedFilter
 from .noise import fit_law
-from .ridges import Ridges
+from .ridges import Marks, Ridges
 from .scan_lines import ScanLines
 
 Rates = Float[np.ndarray, "..."]
 """Ridges in a pixel and an e-fold of height, one a bin of heights."""
+Stays = Float[np.ndarray, "..."]
+"""Share of clutter that stays over frames, one a bin of heights."""
 
 _GAUSSIAN = 1.4826
 """Standard deviation of Gaussian noise as a multiple of its median absolute value."""
@@ -43,6 +45,10 @@ _BANDS, _FEW = 8, 3.0
 say as much of how it goes on as nothing known."""
 _MAXIMA = 3.0
 """Times that noise makes more low maxima than clutter is expected to; what is beyond is clutter."""
+_STAYS = 1e-3
+"""Share of clutter that other frames show, too, which is expected before anything is known."""
+_SAME = 1.5
+"""Grains within which another frame shows the same ridge."""
 _ENOUGH, _ALIKE = np.log(50.0), 4.0
 """Evidence of one scan line up to which it counts fully, and the lines over which clutter hangs
 together, as a particle does: what is beyond counts as of so many lines at once."""
@@ -106,14 +112,10 @@ def learn_rates(
     counts, pixels = np.zeros(len(_HEIGHTS)), 0
     going, by_chance = np.zeros((2, _BANDS, len(_HEIGHTS)))
     for one, lasers in zip(ridges, posteriors, strict=True):
-        stripe = np.any([one.are_long(posterior > 0.5) for posterior in lasers], axis=0)
-        other = one.exist & ~stripe & ~one.are_within(stripe, one.reach)
-        place = np.rint(np.log(one.heights[other] / _HEIGHTS[0]) / _STEP).astype(int)
-        place = np.clip(place, 0, len(counts) - 1)
+        other = _are_clutter(one, lasers)
+        band, place = _bins(one, other)
         go_on, expected = one.go_on(other)
         counts += np.bincount(place, minlength=len(counts))
-        band = (_BANDS * one.positions[other] / len(one.lines.levels)).astype(int)
-        band = np.clip(band, 0, _BANDS - 1)
         np.add.at(going, (band, place), go_on[other])
         np.add.at(by_chance, (band, place), expected[other])
         pixels += one.lines.levels.size
@@ -124,6 +126,76 @@ def learn_rates(
     # A stripe too faint to be told goes on as well, but in some bands of the picture alone.
     clumps = np.maximum(np.median((going + _FEW) / (by_chance + _FEW), axis=0), 1.0)
     return rates * np.where(_HEIGHTS < _HIGH, clumps, 1.0)
+
+
+def learn_stays(
+    ridges: Sequence[Ridges], posteriors: Sequence[Sequence[Float[np.ndarray, "_ most"]]]
+) -> Stays:
+    """Measure which share of the clutter of each height other frames show in its place, too.
+
+    Snow is gone by the next frame; blocks of an encoder, remnants of dirt and glare beside a bright
+    stripe stay. Asked are those beside one, in the next scan line, that stays: a false line is made
+    of them, and each of its lines tells no more than how often such a one stays as well.
+
+    Args:
+        ridges: Of frames spread over the recording.
+        posteriors: Of each ridge being the stripe, of each laser.
+    """
+    staying, asked = np.zeros((2, _BANDS, len(_HEIGHTS)))
+    for one, lasers, next_one in _followed(ridges, posteriors):
+        other = _are_clutter(one, lasers)
+        is_there = one.are_also_in(next_one, near=_SAME)
+        other &= one.are_beside(other & is_there)
+        chance = one.chance_of(next_one, near=_SAME)[other]
+        np.add.at(staying, _bins(one, other), is_there[other] - chance)
+        np.add.at(asked, _bins(one, other), 1.0 - chance)
+    # A stripe too faint to be told stays as well, but in some bands of the picture alone.
+    share = (np.maximum(staying, 0.0) + _FEW * _STAYS) / (asked + _FEW)
+    return np.clip(np.median(share, axis=0), _STAYS, 1.0)
+
+
+def _followed(
+    ridges: Sequence[Ridges], posteriors: Sequence[Sequence[Float[np.ndarray, "_ most"]]]
+) -> Iterator[tuple[Ridges, Sequence[Float[np.ndarray, "_ most"]], Ridges]]:
+    """Give each frame with its posteriors and the next one that has the same rows."""
+    for number, (one, lasers) in enumerate(zip(ridges, posteriors, strict=True)):
+        row = one.lines.frame.first_row
+        for other in ridges[number + 1 :]:
+            if other.lines.frame.first_row == row:
+                yield one, lasers, other
+                break
+
+
+def _are_clutter(ridges: Ridges, lasers: Sequence[Float[np.ndarray, "_ most"]]) -> Marks:
+    """Tell which ridges are neither a long stripe nor near one."""
+    stripe = np.any([ridges.are_long(posterior > 0.5) for posterior in lasers], axis=0)
+    return ridges.exist & ~stripe & ~ridges.are_within(stripe, ridges.reach)
+
+
+def _bins(ridges: Ridges, which: Marks) -> tuple[Indices, Indices]:
+    """Give the band of the picture and the bin of heights that each of some belongs to."""
+    place = np.rint(np.log(ridges.heights[which] / _HEIGHTS[0]) / _STEP).astype(int)
+    band = (_BANDS * ridges.positions[which] / len(ridges.lines.levels)).astype(int)
+    return np.clip(band, 0, _BANDS - 1), np.clip(place, 0, len(_HEIGHTS) - 1)
+
+
+def usual_stays() -> Stays:
+    """Say which share of clutter is expected to stay before a recording is known."""
+    return np.full(len(_HEIGHTS), _STAYS)
+
+
+def bound_by_stays(
+    said: Float[np.ndarray, "lines most"], heights: Float[np.ndarray, "lines most"], stays: Stays
+) -> Float[np.ndarray, "lines most"]:
+    """Bound what frames say for a ridge by the clutter that stays in them as a surface does.
+
+    Args:
+        said: Logarithm of the likelihood ratio against clutter that does not stay.
+        heights: Of the ridges.
+        stays: Share of the clutter that stays, by height; see `learn_stays`.
+    """
+    share = np.interp(np.log(np.maximum(heights, 1.0)), np.log(_HEIGHTS), stays)
+    return -np.log(share + (1.0 - share) * np.exp(-said))
 
 
 def weigh_heights(

@@ -9,7 +9,7 @@ from jaxtyping import Float
 from .._kernels.chain import follow_chain
 from ..errors import InputError
 from .branches import go_on_beside
-from .clutter import Rates, weigh_heights
+from .clutter import Rates, Stays, bound_by_stays, weigh_heights
 from .ridges import Marks, Ridges, find_runs
 
 _STEPS = np.array([0.25, 1.2, 0.80, 0.19, 0.35])
@@ -43,6 +43,8 @@ class Markov:
 
     rates: Rates
     """Ridges of snow and glow in a pixel and an e-fold of height; see `weigh_heights`."""
+    stays: Stays
+    """Share of these that other frames show, too, by height; see `bound_by_stays`."""
     birth: float
     """Probability that a stripe begins at a scan line."""
     death: float
@@ -107,7 +109,7 @@ def ask_frames(near: Mapping[int, Ridges], markov: Markov) -> Evidence:
         is_there = own.are_also_in(near[distance], near=1.0 + 0.25 * abs(distance))
         seen = np.where(own.heights > _FAINT, _SEEN, _SEEN_FAINT)
         said += np.where(is_there, seen, _UNSEEN * sure)
-    said *= _persistence(near)
+    said = bound_by_stays(_persistence(near) * said, own.heights, markov.stays)
     _spare_long(own, said, markov)
     return np.where(own.are_blurred_ends(), np.minimum(said, 0.0) + _END, said)
 

@@ -22,7 +22,7 @@ from .assemble import assemble_stripe
 from .attenuation import estimate_attenuation, nearer_side
 from .base import AbstractExtractor
 from .centres import Centres, doubt_wide, find_centres, join_frames
-from .clutter import Rates, learn_rates, usual_rates
+from .clutter import Rates, Stays, learn_rates, learn_stays, usual_rates, usual_stays
 from .fixed import learn_fixed_patterns
 from .glow import clearance, learn_glow
 from .markov import Markov, ask_frames
@@ -46,8 +46,9 @@ _ROUNDED = 0.5
 """Standard deviation of a pixel's noise below which rounding draws lines itself [grey levels]."""
 _LOW, _FEW_LONG = 8.0, 0.1
 """Median score, and share of what goes on over many scan lines, below which a recording shows no
-stripe: a surface that is as faint as that is found in long lines only, remnants of dirt in short
-ones. Small pieces of a surface are seen in clear water only, where they are bright."""
+stripe: a surface that is as faint as that, or that a deeper look alone shows, is found in long
+lines, remnants of dirt in short ones. Small pieces of a surface are seen in clear water only, where
+they are bright."""
 _SOME = 0.07
 """Share of the scan lines that a deep look finds by chance, in what is left of rows' own noise."""
 _DEEP, _WIDER = 0.6, 3
@@ -87,7 +88,7 @@ class Murk(AbstractExtractor):
                 "Murk needs min_posterior from 0.5 up to 1 and min_score ≥ 1, got "
                 f"{self.min_posterior:g} and {self.min_score:g}."
             )
-        self._markov(usual_rates())
+        self._markov(usual_rates(), usual_stays())
 
     def learn(self, frames: Sequence[Frame], rig: Rig, *, laser: int = 0) -> Background:
         """Learn the noise of each grey level, the stripe's shape, and how murky the water is."""
@@ -106,6 +107,7 @@ class Murk(AbstractExtractor):
             levels,
             learnt.bank.shapes,
             rates=learnt.rates,
+            stays=learnt.stays,
             search=learnt.bank.search,
             fixed=fixed,
         )
@@ -147,7 +149,7 @@ class Murk(AbstractExtractor):
     ) -> Iterator[Centres]:
         noise, shapes = background.levels, background.shapes
         assert noise is not None  # checked by `extract`
-        markov = self._markov(background.rates)
+        markov = self._markov(background.rates, background.stays)
         bank = FilterBank.of(shapes, noise, background.search)
         scored = (bank.score(lines) for lines in look)
         ridges = (find_frame_ridges(near, bank) for near in with_neighbours(scored, 1))
@@ -163,7 +165,7 @@ class Murk(AbstractExtractor):
     def _learn_shapes(
         self, look: Sequence[ScanLines], noise: Noise, search: Search
     ) -> tuple[StripeShape, ...]:
-        markov = self._markov(usual_rates())
+        markov = self._markov(usual_rates(), usual_stays())
         return learn_stripe_shapes(look, noise, markov=markov, search=search)
 
     def _learn_fixed(
@@ -173,7 +175,10 @@ class Murk(AbstractExtractor):
         rim = add_rim(frames, noise, ())
         look = [see(frame, fixed=rim) for frame in frames]
         shapes = self._learn_shapes(_thin(look), noise, self._plain)
-        bank, markov = FilterBank.of(shapes, noise, self._plain), self._markov(usual_rates())
+        bank, markov = (
+            FilterBank.of(shapes, noise, self._plain),
+            self._markov(usual_rates(), usual_stays()),
+        )
         stays = learn_fixed_patterns(look, bank, markov, lasers=lasers)
         return add_rim(frames, noise, stays), shapes
 
@@ -189,7 +194,8 @@ class Murk(AbstractExtractor):
             more = deep.count > _MORE * max(learnt.count, few)
             if more or _MORE * deep.count < learnt.count:
                 learnt = deep
-        if learnt.height < _LOW and learnt.long < _FEW_LONG * learnt.count:
+        is_faint = learnt.height < _LOW or learnt.bank.search != bank.search
+        if is_faint and learnt.long < _FEW_LONG * learnt.count:
             return replace(learnt, rates=np.full_like(learnt.rates, np.inf))
         return learnt
 
@@ -199,7 +205,7 @@ class Murk(AbstractExtractor):
         lasers = [OtherLasers.of(rig, number) for number in range(len(rig.lasers))]
         rates = usual_rates()
         for _ in range(2):
-            markov = self._markov(rates)
+            markov = self._markov(rates, usual_stays())
             stripes = [
                 [markov.follow(one, np.log(laser.tell(one))) for laser in lasers] for one in ridges
             ]
@@ -214,10 +220,11 @@ class Murk(AbstractExtractor):
             for one, each in zip(ridges, stripes, strict=True)
             for posterior in each
         )
-        return _Learnt(bank, rates, np.concatenate(heights), long)
+        stays = learn_stays(ridges, stripes)
+        return _Learnt(bank, rates, stays, np.concatenate(heights), long)
 
-    def _markov(self, rates: Rates) -> Markov:
-        return Markov(rates, self.birth, self.death)
+    def _markov(self, rates: Rates, stays: Stays) -> Markov:
+        return Markov(rates, stays, self.birth, self.death)
 
 
 @dataclass(frozen=True, eq=False)
@@ -226,6 +233,7 @@ class _Learnt:
 
     bank: FilterBank
     rates: Rates
+    stays: Stays
     heights: Scalars
     """Scores of what is the stripe."""
     long: int

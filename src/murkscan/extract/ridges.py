@@ -148,6 +148,23 @@ class Ridges:
         chance[:-1] = 2.0 * self.grains[:-1] * density[1:, None]
         return marks, chance
 
+    def are_beside(self, which: Marks) -> Marks:
+        """Tell which have one of some within a grain in a scan line beside theirs."""
+        places = np.where(which, self.straight, np.inf)
+        marks = np.zeros(which.shape, bool)
+        for own, other in ((slice(1, None), slice(-1)), (slice(-1), slice(1, None))):
+            apart = np.abs(self.straight[own, :, None] - places[other, None, :])
+            marks[own] |= (apart < self.grains[own, :, None]).any(axis=2)
+        return marks
+
+    def chance_of(
+        self, other: "Ridges", *, near: float, share: float = 0.33
+    ) -> Float[np.ndarray, "lines most"]:
+        """Compute how probably each is in another frame by chance; see `are_also_in`."""
+        tops = np.where(other.exist, other.heights, 0.0)[:, None, :]
+        high = (tops > share * self.heights[:, :, None]).sum(axis=2)
+        return 1.0 - np.exp(-2.0 * near * self.grains * high / len(self.lines.levels))
+
     def agreement(self, other: "Ridges") -> float:
         """Give the share of long, sure stripes that another frame has, too; NaN where few are."""
         long = self.are_sure_and_long

@@ -43,6 +43,9 @@ _FLICKER, _MOST_FLICKER = 0.1, 0.5
 passes by: speckle and paint of painted, grown-over or bare walls vary by 0.2 to 0.5, dirt on the
 window by 0.05 at most (measured on the cases of benchmarks/murk.py with fixed clutter); and the
 most that one ridge counts with: a particle before it, or a digit that changes, is more."""
+_UNSURE = 0.3
+"""Share to which the variance of a ridge's height that noise explains is known: a ridge is a
+maximum, and faint ones are seen only where noise adds to them."""
 _LONE = 1.2
 """Standing ridges a scan line and laser up to which a steady line is the laser's own: a still
 stripe on an even wall, if nothing else in the picture is dirt."""
@@ -111,7 +114,23 @@ class Standing:
         steady = np.where(self.are_moving(), -_MOST_TOLD, steady)
         if not is_dirty:
             steady = np.minimum(steady, 0.0)
-        return self.stand & (self.pool(told + steady, _FAR_LINES) < _CLEARLY)
+        pooled = self.pool(told + steady, _FAR_LINES)
+        if lasers == 1:
+            pooled += self.pool(_BOTH * self._are_beside_surface(pooled), _FAR_LINES)
+        return self.stand & (pooled < _CLEARLY)
+
+    def _are_beside_surface(self, pooled: Float[np.ndarray, "lines most"]) -> Marks:
+        """Tell which stand beside what is clearly a surface, and more so: of two one is the stripe.
+
+        Args:
+            pooled: Logarithm of the ratio of being fixed to the picture.
+        """
+        value = np.where(self.stand, pooled, np.inf)
+        place = np.where(self.stand, self.ridges.positions, np.inf)
+        with np.errstate(invalid="ignore"):
+            apart = np.abs(place[:, :, None] - place[:, None, :]) > self.ridges.reach
+            lower = value[:, None, :] < np.minimum(value[:, :, None], 0.0) - _CLEARLY
+        return self.stand & (apart & lower).any(axis=2)
 
     def are_crowded(self) -> Marks:
         """Tell which have others nearby in their scan line, as strokes of letters have."""
@@ -142,7 +161,7 @@ class Standing:
             for each in (np.ones_like(square), excess, square)
         )
         count, square = np.maximum(count, 1.0), np.maximum(square, 1.0)
-        doubt = 2.0 * np.sqrt(2.0 * count / len(self.frames))
+        doubt = 2.0 * np.sqrt(2.0 * count / len(self.frames)) + _UNSURE * count
         flicker, most = (np.sqrt(each / square) for each in (excess, excess + doubt))
         # Noise alone scatters faint ones: they may flicker or not.
         flicker = np.where(flicker < _FLICKER, np.clip(most, _FLICKER / 10, _FLICKER), flicker)

@@ -140,6 +140,8 @@ class Background(ShortRepr):
     """The stripe's looks, the commonest first; of extractors that expect some."""
     rates: Scalars = field(default_factory=lambda: np.zeros(0))
     """How often clutter of each height is met; of extractors that weigh by it."""
+    stays: Scalars = field(default_factory=lambda: np.zeros(0))
+    """Share of the clutter of each height that other frames show in its place, too."""
     search: Search = PLAIN
     """How deep is looked; of extractors that look deeper where the stripe is faint."""
     fixed: tuple[FixedPattern, ...] = ()
