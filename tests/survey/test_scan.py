@@ -135,7 +135,7 @@ def test_a_killed_scan_goes_on_and_gives_the_same(scanned, hull, tmp_path):
     child.kill()
     assert child.wait() != 0, "the scan was done before it could be killed"
     written = (out / "extract/frames/000000.json").stat().st_mtime_ns
-    subprocess.run(_command(hull, out), check=True, capture_output=True)
+    ms.scan(*_open(hull), MOTION, out=out)
     assert (out / "extract/frames/000000.json").stat().st_mtime_ns == written
     again = (out / "cloud/cloud.ply").read_bytes()
     assert again == (scanned.root / "cloud/cloud.ply").read_bytes()
@@ -160,7 +160,7 @@ def test_a_full_disk_is_one_sentence_and_nothing_finished_is_lost(scanned, hull,
     assert "cloud.ply" in limited.stderr
     assert not list((out / "cloud").glob(".*part*"))
     written = (out / "extract/stripes/000000.parquet").stat().st_mtime_ns
-    subprocess.run(_command(hull, out), check=True, capture_output=True)
+    ms.scan(*_open(hull), MOTION, out=out)
     assert (out / "extract/stripes/000000.parquet").stat().st_mtime_ns == written
     again = (out / "cloud/cloud.ply").read_bytes()
     assert again == (scanned.root / "cloud/cloud.ply").read_bytes()
