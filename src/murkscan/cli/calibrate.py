@@ -28,6 +28,7 @@ for _place, (_name, _help) in enumerate(
         "laser": "Calibrate a laser on photos of its line on a board, in air or under water.",
         "mount": "Find where the camera sits on the vehicle, from photos of a still board.",
         "check": "Measure a known length in the scan's own water: is the rig right?",
+        "photograph": "Take photos of a board from a live camera, by itself.",
         "board": "Draw a chessboard of the right size to print.",
     }.items()
 ):

@@ -22,7 +22,7 @@ from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp
 
 from ..errors import FormatError, InputError, MurkscanError
-from .boards import Boards, tell_drawn
+from .boards import Boards, ask_for_photo, tell_drawn, tell_sight
 from .commands import make_command
 from .dives import pack_points, tell_dive
 from .finds import look_around
@@ -71,6 +71,8 @@ def make_app(
         Route("/api/scan", _said(studio.scan)),
         Route("/api/boards", _said(studio.boards)),
         Route("/api/drawn", _said(studio.drawn)),
+        Route("/api/sight", _said(studio.sight)),
+        Route("/api/sight/take", _said(studio.photo), methods=["POST"]),
         Route("/api/dive", _said(studio.dive)),
         Route("/api/points", _said(studio.points)),
         Route("/api/command", _said(studio.command), methods=["POST"]),
@@ -140,6 +142,16 @@ class _Studio:
         asked = request.query_params
         task = partial(tell_drawn, self._sandbox, asked.get("rig", ""), asked.get("step", ""))
         return await to_thread.run_sync(task)
+
+    async def sight(self, request: Request) -> Any:
+        """Say what the camera sees while photos are taken."""
+        name = request.query_params.get("folder", "")
+        return await to_thread.run_sync(tell_sight, self._sandbox, name)
+
+    async def photo(self, request: Request) -> Any:
+        """Ask for a photo."""
+        name = request.query_params.get("folder", "")
+        return await to_thread.run_sync(ask_for_photo, self._sandbox, name)
 
     async def dive(self, request: Request) -> Any:
         """Say what a running dive shows."""

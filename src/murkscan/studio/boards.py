@@ -2,12 +2,15 @@
 
 import re
 from collections import OrderedDict
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from ..calibrate.board.chessboard import Chessboard
-from ..errors import InputError
+from ..errors import FormatError, InputError
+from ..io.json_files import load_json
 from ..survey.board_folder import BoardFolder, LookedAt
+from ..survey.photograph import SIGHT
 from .sandbox import Sandbox
 
 _KEPT = 4
@@ -79,6 +82,35 @@ def tell_drawn(sandbox: Sandbox, rig: str, step: str) -> dict[str, Any]:
             for path in drawn
         ],
     }
+
+
+def tell_sight(sandbox: Sandbox, name: str) -> dict[str, Any]:
+    """Say what the camera sees while photos are taken into a folder.
+
+    Raises:
+        InputError: It would not lie in the studio's folder.
+    """
+    sight = sandbox.resolve(name) / SIGHT
+    told: dict[str, Any] = {"status": None, "picture": ""}
+    # A file that is just being renamed into place is asked for again by the page.
+    with suppress(FormatError, OSError):
+        told["status"] = load_json(sight / "status.json")
+        picture = sight / "picture.jpg"
+        told["picture"] = f"{sandbox.name(picture)}?{picture.stat().st_mtime_ns}"
+    return told
+
+
+def ask_for_photo(sandbox: Sandbox, name: str) -> dict[str, Any]:
+    """Ask for a photo of the next picture.
+
+    Raises:
+        InputError: No photos are being taken into that folder.
+    """
+    sight = sandbox.resolve(name) / SIGHT
+    if not sight.is_dir():
+        raise InputError(f"No photos are being taken into {name!r}.")
+    (sight / "take").touch()
+    return {"asked": True}
 
 
 def _photo(sandbox: Sandbox, folder: Path, one: LookedAt) -> dict[str, Any]:

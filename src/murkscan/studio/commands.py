@@ -30,7 +30,7 @@ class Command:
     page: str
     """The page that asks for it."""
     out: str = ""
-    """The scan that it works in, within the folder."""
+    """The folder that it works in, within the studio's."""
 
     @property
     def text(self) -> str:
@@ -66,6 +66,9 @@ _NEW_RIG = _flags("rig", "out")
 
 FORMS: dict[str, _Form] = {
     "calibrate board": _Form({"out": "out"}, _flags("board square-mm")),
+    "calibrate photograph": _Form(
+        {"source": "in or text", "folder": "out"}, _flags("board boards wavelength-nm timeout-s")
+    ),
     "calibrate camera": _Form(
         {"images": "in"},
         _flags("board square-mm charuco-marker-mm charuco-dictionary wavelength-nm") | _NEW_RIG,
@@ -156,7 +159,7 @@ def make_command(
         if given.get(key):
             flags += _flag(sandbox, key, kind, given[key])
     words = ["measure", *places, form.middle] if form.middle else [*name.split(), *places]
-    return Command((*words, *flags), page, given.get("out", ""))
+    return Command((*words, *flags), page, given.get("out") or given.get("folder", ""))
 
 
 def _read(key: str, value: Any) -> str:

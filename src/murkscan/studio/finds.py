@@ -59,8 +59,8 @@ def look_around(sandbox: Sandbox) -> Found:
 def _walk(root: Path) -> Iterator[tuple[Path, list[str], list[str]]]:
     for folder, folders, files in os.walk(root):
         deep = len(Path(folder).relative_to(root).parts)
-        if "status.json" in files and Path(folder).name == "live":
-            continue  # what a dive shows of itself is no recording
+        if "status.json" in files and Path(folder).name in ("live", "sight"):
+            continue  # what is seen now is no recording
         folders[:] = sorted(
             name for name in folders if not name.startswith(".") and deep < _DEEPEST
         )

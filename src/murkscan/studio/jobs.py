@@ -37,7 +37,7 @@ class Job:
     page: str
     """The page that began it."""
     out: str
-    """What it writes to, within the folder; empty where that is nothing of its own."""
+    """The folder that it works in, within the studio's; empty where that is none of its own."""
     process: int
     began: float
 

@@ -4,6 +4,7 @@ import { addressOf, ask, listen, question, studio } from "./ask.js";
 import { draw, keep, make, note } from "./dom.js";
 import { commandForm, fill, uploader } from "./form.js";
 import { card } from "./rig.js";
+import { sightCard } from "./sight.js";
 
 const BOARD = [
   { key: "count", label: "Number of boards", kind: "number", value: 15, step: 1, min: 4, local: true, hint: "photographs that you mean to take" },
@@ -40,15 +41,16 @@ export function calibratePage(page, [named]) {
     fields: [{ key: photos, label: "Photographs", kind: "select" }, ...BOARD,
       step === "camera" ? { key: "rig", label: "Rig file", value: "rig.toml", hint: "made where it is missing" } : { key: "rig", label: "Rig file", kind: "select" },
       ...more],
-    onchange: () => look(),
+    onchange: () => { sight.write(); look(); },
   });
   form.also = ({ wide, high }) => ({ board: `${wide}x${high}` });
   const name = make("input", { value: `boards-${step}`, "aria-label": "Folder for photographs", autocomplete: "off" });
   const bring = make("div", { className: "toolbar" }, make("label", {}, make("span", { textContent: "Folder for what you bring" }), name),
     uploader({ label: "Bring photographs", accept: "image/*,video/*", nameOf: (file) => `${name.value.trim()}/${file.name}`, done: () => { form.set(photos, name.value.trim()); look(); } }));
+  const sight = sightCard(step, form.read, (folder) => { form.set(photos, folder); look(); });
   const missing = make("section", { className: "card" }), verdict = make("div", {}), gallery = make("div", { className: "gallery" });
   page.append(make("h1", { textContent: "Calibrate" }), make("div", { className: "choice" }, tabs), note(words),
-    make("section", { className: "card" }, form, bring), missing, verdict, gallery);
+    make("section", { className: "card" }, form, bring), sight.element, missing, verdict, gallery);
 
   let isGone = false, timer = 0, asked = 0;
   async function look() {
@@ -85,6 +87,7 @@ export function calibratePage(page, [named]) {
   const stop = listen((state) => {
     const { photos: folders, rigs, logs } = state.found;
     const key = JSON.stringify([folders, rigs, logs]);
+    sight.sync(state);
     if (key === last) return;
     fill(form.input(photos), folders);
     if (step !== "camera") fill(form.input("rig"), rigs);
@@ -94,7 +97,7 @@ export function calibratePage(page, [named]) {
     form.write();
     look();
   });
-  return () => { isGone = true; clearTimeout(timer); stop(); };
+  return () => { isGone = true; clearTimeout(timer); stop(); sight.end(); };
 }
 
 function missingOf({ is_folder: isFolder, so_far: told, count, photos }, wanted, step) {
