@@ -12,7 +12,7 @@ from murkscan.errors import InputError
 from murkscan.extract.lasers import join_remarks
 from murkscan.geometry.mesh_distance import distance_to_mesh
 from murkscan.io.mesh_files import load_mesh
-from murkscan.project import EXTRACT
+from murkscan.project import EXTRACT, MOTION
 from murkscan.simulate import Scene, Sensor, drive
 from murkscan.simulate.shapes import Plane, Sphere
 from murkscan.simulate.textures import Plain
@@ -86,6 +86,16 @@ def test_what_both_lasers_passed_is_surface_once(scanned):
     span = np.ptp(cloud.points[:, :2], axis=0)
     assert area < 1.1 * span.prod()
     assert mapped < 1.15 * span.prod()
+
+
+def test_an_exact_speed_is_left_and_how_far_the_sheets_lie_apart_is_told(scanned):
+    moved = scanned.finished(MOTION).result
+    assert moved.corrected is None
+    (words,) = moved.correction
+    apart = float(words.split("surfaces lie ")[1].split(" mm")[0])
+    # Only noise, of some hundredths of a millimetre, and the ball's edges.
+    assert apart < 0.5
+    np.testing.assert_allclose(scanned.load_trajectory().positions[-1, 1], SPEED * (NUM - 1) / RATE)
 
 
 def test_a_finder_that_cannot_tell_lasers_apart_follows_one_of_them(recorded, tmp_path):

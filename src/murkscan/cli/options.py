@@ -33,6 +33,8 @@ WORK = Group("Who does the work", sort_key=13)
 
 Settings = Annotated[tuple[str, ...], Parameter(name="--set", negative=())]
 """Settings of a Choice, each as NAME=NUMBER."""
+NoAdjust = Annotated[bool, Parameter(negative=())]
+"""Whether a trajectory stays as it is logged."""
 Lasers = Annotated[tuple[int, ...], Parameter(negative=())]
 """Numbers of lasers of the rig; none for all."""
 

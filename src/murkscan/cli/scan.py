@@ -16,7 +16,15 @@ from ..ui.choices import (
     make_rules,
 )
 from ..ui.values import read_box
-from .options import ExecutorFlags, Lasers, MaybePlace, MotionFlags, RecordingFlags, Settings
+from .options import (
+    ExecutorFlags,
+    Lasers,
+    MaybePlace,
+    MotionFlags,
+    NoAdjust,
+    RecordingFlags,
+    Settings,
+)
 from .paths import RecordingPaths, RigFile
 from .progress import progress_bars
 from .typed import WORDS
@@ -36,6 +44,7 @@ def scan(
     method: MethodName = "ray-sheet",
     mesher: MesherName = "grid",
     laser: Lasers = (),
+    no_adjust: NoAdjust = False,
     volume_m: MaybePlace = None,
     frames: Annotated[bool, Parameter(negative=())] = False,
 ) -> None:
@@ -62,6 +71,8 @@ def scan(
     laser
         Number of a laser in the rig whose stripe is followed, from 0; may be given again. All of
         them unless given.
+    no_adjust
+        Leave the trajectory as it is logged, though the scan saw places twice.
     volume_m
         Leave out of the model what lies outside of this box: two corners X,Y,Z,X,Y,Z in the world
         [m].
@@ -88,6 +99,7 @@ def scan(
             method=make_method(method),
             mesher=make_mesher(mesher, ()),
             lasers=laser,
+            adjust=not no_adjust,
             rules=make_rules(volume_m),
             frames=frames,
             rig_file=rig,

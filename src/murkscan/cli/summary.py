@@ -56,6 +56,12 @@ def _tell_water(water: "Attenuation") -> str:
     )
 
 
+def print_correction(words: Sequence[str]) -> None:
+    """Say how the scan has corrected its trajectory, or why it has not."""
+    if words:
+        tell("motion", *words)
+
+
 def print_skips(skips: "Sequence[Skipped]") -> None:
     """Say what could not be read."""
     for _, _, reason in skips[:_SKIPS_SHOWN]:
@@ -80,6 +86,7 @@ def print_summary(project: "Project") -> None:
     tell("frames", tell_made(found))
     print_skips(found.skips)
     print_remarks((*found.remarks, *moved.remarks), found.attenuation)
+    print_correction(moved.correction)
     tell("points", f"{tell_made(cloud)}: {root / 'cloud' / 'cloud.ply'}")
     tell("model", f"{tell_made(mesh)}: {root / 'mesh' / 'mesh.glb'}, .ply, .stl")
     tell("quality", *tell_quality(found), *tell_quality(report), *tell_quality(mesh))

@@ -8,6 +8,7 @@ import numpy as np
 from ..errors import InputError
 from ..types.arrays import Points, Scalars
 from ..types.trajectory import Trajectory
+from .measured import Measured
 
 _SLOWEST, _FASTEST = 1e-9, 1e3
 """Sizes of a speed [m/s] or a step [m] that a scan can have."""
@@ -50,6 +51,13 @@ class AbstractMotion(abc.ABC):
         Raises:
             InputError: The settings say nothing about more than half of the times.
         """
+
+    def measure(self) -> Measured | None:
+        """Give the measurements behind the poses, which a scan may correct.
+
+        None where nothing is stated of how good they are: then the poses count as they are.
+        """
+        return None
 
     def remarks(self, times: Scalars) -> tuple[str, ...]:
         """Tell what was odd, such as frames that have no pose, in sentences.

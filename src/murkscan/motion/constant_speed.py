@@ -6,6 +6,7 @@ from typing import ClassVar, final
 from ..types.arrays import Scalars
 from ..types.trajectory import Trajectory
 from .base import AbstractMotion, Direction, check_pace, follow_line
+from .measured import Measured, measure_speed
 
 
 @final
@@ -40,3 +41,7 @@ class ConstantSpeed(AbstractMotion):
     def follow(self, times: Scalars, pictures: Scalars) -> Trajectory:
         """Give world_from_camera at the time of each frame; see `AbstractMotion.follow`."""
         return follow_line(times, self.speed * (times - times[0]), self.along, sigma=self.sigma)
+
+    def measure(self) -> Measured | None:
+        """Give the speed, as far as it is not exact; see `AbstractMotion.measure`."""
+        return measure_speed(self.speed, self.sigma, "xyz".index(self.along))

@@ -7,13 +7,15 @@ import numpy as np
 
 from ..errors import InputError
 from ..io.navigation_log import NavigationLog, read_navigation_log
-from ..types.navigation import NavigationAccuracy
+from ..types.arrays import Vector
+from ..types.navigation import Navigation, NavigationAccuracy
 from ..types.pose import Pose
 from ..types.rig import Rig
 from ..types.trajectory import Trajectory
 from ..types.water import Water
 from .base import AbstractMotion, Direction
 from .constant_speed import ConstantSpeed
+from .measured import measure_along_attitude
 from .pose_log import PoseLog
 from .reckon import reckon
 
@@ -69,6 +71,8 @@ def follow_navigation(
             "starboard, down"
         )
     way = _find_way(path, log, mount or Pose.identity(), speed, along, said)
+    turn = (mount or Pose.identity()).rotation
+    ahead = None if speed is None else speed * (turn @ np.eye(3)["xyz".index(along)])
     motion = PoseLog(
         way,
         mount or Pose.identity(),
@@ -77,6 +81,7 @@ def follow_navigation(
         gap,
         stated=_state(rig.navigation, speed=speed, sigma=sigma, is_placed=way is log.poses),
         name=str(path),
+        navigation=_measure(log, rig.navigation, ahead, sigma),
     )
     return motion, tuple(said)
 
@@ -91,6 +96,21 @@ def _state(
     if speed is None:
         return replace(known, position_noise=None, speed=None)
     return replace(known, position_noise=None, velocity_bias=0.0, speed=sigma or None)
+
+
+def _measure(
+    log: NavigationLog, stated: NavigationAccuracy | None, ahead: Vector | None, sigma: float
+) -> Navigation | None:
+    """Give what a scan may correct: measurements whose accuracy is stated, or a speed's."""
+    measured = log.navigation
+    if ahead is not None and measured.attitude is not None:
+        span = float(measured.attitude.times[0]), float(measured.attitude.times[-1])
+        return measure_along_attitude(measured, ahead, sigma, span) if sigma else None
+    if stated is None:
+        return None
+    is_placed = measured.position is not None and stated.position_noise is not None
+    is_led = measured.velocity is not None and stated.velocity_noise is not None
+    return measured if is_placed or is_led else None
 
 
 def _find_way(

@@ -9,12 +9,13 @@ import numpy as np
 
 from ..errors import InputError
 from ..types.arrays import Mask, Scalars
-from ..types.navigation import NavigationAccuracy
+from ..types.navigation import Navigation, NavigationAccuracy
 from ..types.pose import Pose
 from ..types.trajectory import Trajectory
 from .base import AbstractMotion
 from .errors import log_errors
 from .excursions import Excursion, leave_out_excursions
+from .measured import Measured, by_recording, measure_poses
 
 _SAME = 1e-6
 """Difference below which two times are the same [s]: a clock since 1970 has no finer digits."""
@@ -47,6 +48,10 @@ class PoseLog(AbstractMotion):
 
     name: str = ""
     """What the log is called, for the record."""
+
+    navigation: Navigation | None = None
+    """The measurements that the poses were made from, by the same clock; None where the poses are
+    themselves what was logged."""
 
     needs_times: ClassVar[bool] = True
     carries_mount: ClassVar[bool] = True
@@ -87,6 +92,16 @@ class PoseLog(AbstractMotion):
             step = float(np.median(np.diff(log.times))) if len(log.times) > 1 else self.gap
             poses = replace(poses, errors=log_errors(poses, self.stated, step=step))
         return replace(poses.follow_mount(self.vehicle_from_camera), times=times[covered])
+
+    def measure(self) -> Measured | None:
+        """Give what was measured, where its accuracy is stated; see `AbstractMotion.measure`."""
+        log, _ = self._believed
+        navigation = self.navigation
+        if navigation is None and self.stated is not None:
+            navigation = measure_poses(log, self.stated)
+        if navigation is None:
+            return None
+        return by_recording(navigation, self.start, self.vehicle_from_camera)
 
     def remarks(self, times: Scalars) -> tuple[str, ...]:
         """Tell which frames have no pose, and which poses are left out; see the base."""

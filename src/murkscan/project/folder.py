@@ -242,10 +242,18 @@ class Project:
         """Name the pictures of what was found, in order of frames."""
         return sorted(Path(name).stem for name in self._files(EXTRACT).made("overlay/"))
 
-    def save_trajectory(self, trajectory: Trajectory) -> None:
-        """Write motion/trajectory.csv and, where errors are stated, motion/errors.parquet."""
+    def save_trajectory(self, trajectory: Trajectory, *, logged: Trajectory | None = None) -> None:
+        """Write motion/trajectory.csv and, where errors are stated, motion/errors.parquet.
+
+        Args:
+            trajectory: The poses.
+            logged: The poses as the motion alone has them; kept as logged.csv where they differ.
+        """
         with self._files(MOTION).making("trajectory.csv") as path:
             save_poses(path, trajectory)
+        if logged is not None and logged is not trajectory:
+            with self._files(MOTION).making("logged.csv") as path:
+                save_poses(path, logged)
         if trajectory.errors is not None:
             with self._files(MOTION).making("errors.parquet") as path:
                 save_pose_errors(path, trajectory.errors)

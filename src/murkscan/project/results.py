@@ -66,6 +66,10 @@ class MotionResult:
     no interval."""
     start: float = field(default=0.0, metadata={"unit": "s"})
     """What the log's clock showed when recording time was 0 [s]."""
+    correction: tuple[str, ...] = ()
+    """How the scan itself has corrected the log, or why it has not; sentences for the user."""
+    corrected: float | None = field(default=None, metadata={"unit": "m"})
+    """By how far, RMS [m]; None where the poses are those of the log."""
 
 
 @dataclass(frozen=True)

@@ -62,6 +62,9 @@ def as_html(summary: ScanSummary) -> str:
         )
         sections.append(Section("Uncertainty at 68 and 95 %", blocks))
     sections += placed_sections(summary.model.placed)
+    if summary.recorded.correction:
+        notes = [Note(f"{words[0].upper()}{words[1:]}.") for words in summary.recorded.correction]
+        sections.append(Section("Trajectory", notes))
     calibrated = calibration_blocks(summary.recorded.calibration, summary.steps)
     sections.append(Section("Calibration", calibrated))
     if summary.recorded.skips:

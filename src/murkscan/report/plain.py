@@ -32,6 +32,7 @@ def as_json(summary: ScanSummary) -> dict[str, Any]:
         "sigma_mm": as_plain(summary.sigma, 1e3),
         "uncertainty_mm": None if summary.trust is None else as_uncertainty(summary.trust),
         "motion_accuracy": summary.recorded.motion or None,
+        "motion_correction": list(summary.recorded.correction),
         "not_in_uncertainty": list(summary.recorded.unstated),
         "spacing_along_stripe_mm": as_plain(summary.along, 1e3),
         "spacing_along_motion_mm": as_plain(summary.across, 1e3),

@@ -27,6 +27,8 @@ class Recorded:
     """What is odd about the recording, with its cure."""
     motion: str = ""
     """How well the motion is known, in words."""
+    correction: Sequence[str] = ()
+    """How the scan itself has corrected the motion, or why it has not; sentences for the user."""
     unstated: Sequence[str] = ()
     """Whose errors are in no interval, since nothing is stated of them; sentences for the user."""
     attenuation: Attenuation | None = None

@@ -5,36 +5,56 @@ import numpy as np
 from ..capture import AbstractRecording
 from ..errors import InputError
 from ..motion import AbstractMotion
-from ..project import EXTRACT, MOTION, MotionResult, Project, describe, load_recording
+from ..project import (
+    EXTRACT,
+    MOTION,
+    TRIANGULATE,
+    MotionResult,
+    Project,
+    describe,
+    load_recording,
+)
 from ..types.trajectory import Trajectory
-from .progress import silent
+from .correct import Corrected, correct, is_correctable
+from .progress import Progress, silent
 from .stage_runner import run_stage
 
 
-def follow_motion(project: Project, motion: AbstractMotion) -> MotionResult:
-    """Run the motion stage.
+def follow_motion(
+    project: Project, motion: AbstractMotion, *, adjust: bool = True, progress: Progress = silent
+) -> MotionResult:
+    """Run the motion stage: what is logged, corrected by what the scan saw of the same places.
+
+    Args:
+        project: A scan with a finished extract stage, and triangulate where it is corrected.
+        motion: How the camera moved.
+        adjust: Whether the scan corrects a motion whose accuracy is stated.
+        progress: Told when it begins and ends.
 
     Raises:
-        MissingResult: The extract stage has not been finished.
+        MissingResult: A stage before it has not been finished.
         InputError: The recording has no times and the motion needs them, or they lie outside its
             log.
     """
-    stage = project.stage(
-        MOTION,
-        settings={"motion": describe(motion)},
-        inputs={"extract": project.finished(EXTRACT).digest},
-    )
-
+    settings = {"motion": describe(motion), "adjust": adjust}
+    inputs = {"extract": project.finished(EXTRACT).digest}
+    is_adjusted = adjust and is_correctable(motion, project.finished(EXTRACT).result.lasers)
+    if is_adjusted:
+        inputs["triangulate"] = project.finished(TRIANGULATE).digest
+    stage = project.stage(MOTION, settings=settings, inputs=inputs)
     times = project.load_frame_times()
 
-    def prepare() -> Trajectory:
+    def prepare() -> tuple[Trajectory, Corrected]:
         recording = load_recording(project)
         check_times(recording.path, motion, is_timed=recording.is_timed)
         pictures = times.frame.astype(float) / recording.fields_per_picture
-        return motion.follow(times.time, pictures)
+        logged = motion.follow(times.time, pictures)
+        return logged, correct(project, motion, logged) if is_adjusted else Corrected(logged)
 
-    def make(trajectory: Trajectory) -> MotionResult:
-        project.save_trajectory(trajectory)
+    def make(found: tuple[Trajectory, Corrected]) -> MotionResult:
+        logged, corrected = found
+        trajectory = corrected.trajectory
+        project.save_trajectory(trajectory, logged=logged)
         steps = np.linalg.norm(np.diff(trajectory.positions, axis=0), axis=1)
         return MotionResult(
             poses=len(trajectory.times),
@@ -42,12 +62,14 @@ def follow_motion(project: Project, motion: AbstractMotion) -> MotionResult:
             duration=float(np.ptp(times.time)),
             length=float(steps.sum()),
             remarks=motion.remarks(times.time),
-            accuracy="" if trajectory.errors is None else motion.accuracy,
+            accuracy="" if trajectory.errors is None else corrected.accuracy or motion.accuracy,
             carries_mount=motion.carries_mount,
             start=motion.start,
+            correction=corrected.words,
+            corrected=corrected.moved,
         )
 
-    return run_stage(project, stage, make, prepare=prepare, progress=silent)
+    return run_stage(project, stage, make, prepare=prepare, progress=progress)
 
 
 _PROBES = 1000

@@ -31,6 +31,7 @@ def tell_recording(project: Project, scan: ScanRecord) -> Recorded:
         skips=list(extracted.skips),
         remarks=(*extracted.remarks, *motion.remarks),
         motion=motion.accuracy,
+        correction=motion.correction,
         unstated=list_unstated(project),
         attenuation=extracted.attenuation,
         path=recording.path,

@@ -38,6 +38,7 @@ def scan(
     method: AbstractTriangulation | None = None,
     mesher: AbstractMesher | None = None,
     lasers: Sequence[int] = (),
+    adjust: bool = True,
     rules: Sequence[AbstractOutlierRule] = OUTLIER_RULES,
     frames: bool = False,
     spacing: float | None = None,
@@ -60,6 +61,7 @@ def scan(
         method: The way from pixels to points; ray and sheet unless given.
         mesher: The way to make a surface; the scan's own grid unless given.
         lasers: Numbers of the lasers whose stripes are followed; all of the rig unless given.
+        adjust: Whether the scan corrects a motion whose accuracy is stated, from what it saw twice.
         rules: The reasons to take a point out of the cloud.
         frames: Whether to write one cloud a frame for more than 500 frames, too.
         spacing: Wanted spacing of the points [m]; the report judges gaps by the scan's own unless
@@ -93,7 +95,7 @@ def scan(
             project, recording, rig, extractor, lasers=lasers, executor=executor, progress=progress
         )
         triangulate_stripes(project, rig, method, executor=executor, progress=progress)
-        follow_motion(project, motion)
+        follow_motion(project, motion, adjust=adjust, progress=progress)
         build_cloud(project, rig, rules=rules, frames=frames, executor=executor, progress=progress)
         build_mesh(project, mesher, executor=executor, progress=progress)
         draw_views(project, progress=progress)

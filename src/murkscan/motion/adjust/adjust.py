@@ -4,7 +4,6 @@ The order: the logs alone; then tiles of one leg in another, first within each p
 errs least between the two looks, then between passes; then facets, paired anew after each step.
 """
 
-from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
@@ -13,17 +12,17 @@ import numpy as np
 from jaxtyping import Float
 
 from ...errors import InputError
-from ...types.arrays import Scalars
+from ...types.arrays import Mask, Scalars
 from ...types.trajectory import Trajectory
 from .doubt import Doubt
 from .first_path import first_path
-from .legs import Facets, Leg, Pass, cut_legs, make_facets
+from .legs import Facets, Leg, Pass, cut_legs, leg_direction, make_facets
 from .log_terms import Log
 from .pairs import make_side, pair_facets
 from .path import WIDTH, Path
 from .settings import AdjustSettings
 from .solve import State, draw_errors, improve
-from .ties import Ties, as_seen
+from .ties import Ties, as_seen, linearise
 from .tiles import Relief, make_relief, tie_tiles
 from .unknowns import Layout
 
@@ -31,6 +30,11 @@ _MODES = 64
 """Errors that are drawn to state the uncertainty: σ to one part in eleven."""
 _ENOUGH = 5
 """Tiles that agree before two passes count as laid on one another to a bump's width."""
+_BESIDE = 0.75
+"""Time from a tile that was found up to which bumps lie on their like [s]: a vehicle keeps its
+speed so long; tiles follow one another in less."""
+_ROW = 0.3
+"""Time up to which tiles lie in one row, beside one another [s]."""
 _DRAWS = 24
 """Errors that are drawn to say how far tiles may lie from their place: σ to one part in seven."""
 _MORE = 1.05
@@ -54,6 +58,13 @@ class Adjusted:
     """The last ties, of each pair of legs."""
     errors: Float[np.ndarray, "u m"]
     """Independent errors of all unknowns, each of one standard deviation."""
+    errors_as_logged: Float[np.ndarray, "u m"]
+    """The same by the logs alone."""
+    num_tiles: int
+    """Pieces of surface that were found again elsewhere by their relief."""
+    blind: float
+    """Longest stretch of a pass [s] whose relief does not lie on its like when all is done: long,
+    and the pass has settled wrongly."""
 
     def trajectory(self, number: int, times: Scalars) -> Trajectory:
         """Compute world_from_vehicle of a pass, with its errors.
@@ -62,10 +73,19 @@ class Adjusted:
             number: Of the pass.
             times: When [s], strictly increasing.
         """
+        return self.paths[number].as_trajectory(times, self._errors_of(number, self.errors))
+
+    def trajectory_as_logged(self, number: int, times: Scalars) -> Trajectory:
+        """Compute the same by the logs alone; the arguments are those of `trajectory`."""
+        own = self._errors_of(number, self.errors_as_logged)
+        return self.as_logged[number].as_trajectory(times, own)
+
+    def _errors_of(
+        self, number: int, errors: Float[np.ndarray, "u m"]
+    ) -> Float[np.ndarray, "k 6 m"]:
         layout = self.logs[number].layout
         start, size = layout.starts[number], layout.sizes[number]
-        own = self.errors[start : start + size].reshape(-1, WIDTH, self.errors.shape[1])
-        return self.paths[number].as_trajectory(times, own)
+        return errors[start : start + size].reshape(-1, WIDTH, errors.shape[1])
 
     def instrument_errors(self, number: int) -> dict[str, tuple[float, float]]:
         """Estimate the errors of a pass's instruments: biases, drifts, clock, the speed's factor.
@@ -102,25 +122,66 @@ def adjust_passes(
     settings = settings or AdjustSettings()
     state, logs = _start(passes, settings)
     state = improve(state, logs, [], settings, steps=4)
-    as_logged = state.paths
+    as_logged, loose = state.paths, draw_errors(state, logs, [], settings, count=_MODES)
     legs = [
         leg
         for number, (one, path) in enumerate(zip(passes, state.paths, strict=True))
         for leg in cut_legs(number, one, path, settings.cell)
     ]
-    matched: set[tuple[int, int]] = set()
     groups: list[Ties] = []
+    known: list[Ties] = []
     for within in (True, False):
-        state, found = _lay_roughly(state, logs, legs, groups, settings, tell, within=within)
-        matched |= _matched(found)
         rounds = settings.fine_rounds if not within or len(passes) == 1 else settings.inner_rounds
-        state, groups = _lay_finely(
-            state, logs, legs, matched, settings, tell, rounds=rounds, within=within
-        )
+        tiles: list[Ties] = []
+        for cycle in range(settings.cycles):
+            rough, found = _lay_roughly(state, logs, legs, known, settings, tell, within=within)
+            if cycle and _count(found) <= _MORE * _count(tiles):
+                break
+            tiles = found
+            state, groups = _lay_finely(
+                rough, logs, legs, [*known, *tiles], settings, tell, rounds=rounds, within=within
+            )
+        known += tiles
         if len(passes) == 1:
             break
     errors = draw_errors(state, logs, groups, settings, count=_MODES, as_seen=True)
-    return Adjusted(state.paths, as_logged, state, logs, tuple(groups), errors / np.sqrt(_MODES))
+    blind = _find_blind(state, legs, logs, settings)
+    scale = 1 / np.sqrt(_MODES)
+    return Adjusted(
+        state.paths, as_logged, state, logs, tuple(groups), scale * errors, scale * loose,
+        _count(known), blind,
+    )  # fmt: skip
+
+
+def _find_blind(
+    state: State, legs: Sequence[Leg], logs: Sequence[Log], settings: AdjustSettings
+) -> float:
+    """Look for all tiles once more, nearby: how long there was relief, and nothing where it should.
+
+    Returns:
+        The longest stretch [s] in which tiles have relief and none of them lies on its like.
+    """
+    reliefs = [make_relief(make_facets(leg, state.paths[leg.number])) for leg in legs]
+    exact = np.zeros((logs[0].layout.count, 1))
+    blind = 0.0
+    for i, j in combinations(range(len(legs)), 2):
+        if legs[i].number == legs[j].number:
+            for ties, times in _tie_legs(reliefs[i], reliefs[j], state, exact, settings, logs):
+                off = linearise(_carried(ties, state), state.paths).residuals.reshape(-1, 3)
+                pitch = max(legs[i].size, legs[j].size)
+                good = ties.time_a[::3][np.abs(off[:, :2]).max(axis=1, initial=0) < pitch]
+                blind = max(blind, _longest_without(np.unique(times), good))
+    return blind
+
+
+def _longest_without(times: Scalars, good: Float[np.ndarray, " k"]) -> float:
+    """Give the longest time between good ones, as far as there are others in between."""
+    good = np.sort(good)
+    near = np.diff(np.searchsorted(good, [times - _ROW, times + _ROW]), axis=0)[0] > 0
+    bad = times[~near]
+    which = np.searchsorted(good, bad)
+    spans = [np.ptp(bad[which == number]) for number in np.unique(which)]
+    return float(max(spans, default=0.0))
 
 
 def _start(passes: Sequence[Pass], settings: AdjustSettings) -> tuple[State, tuple[Log, ...]]:
@@ -163,7 +224,7 @@ def _lay_roughly(
             _carried(ties, state)
             for i, j in combinations(range(len(legs)), 2)
             if _are_to_meet(legs[i], legs[j], within=within)
-            for ties in _tie_legs(reliefs[i], reliefs[j], state, errors, settings, logs)
+            for ties, _ in _tie_legs(reliefs[i], reliefs[j], state, errors, settings, logs)
         ]
         state = improve(state, logs, [*known, *found], settings, steps=6)
         tell(f"{_count(found)} tiles {'within' if within else 'between'} passes")
@@ -177,13 +238,20 @@ def _count(found: Sequence[Ties]) -> int:
     return sum(map(len, found)) // 3
 
 
-def _matched(found: Sequence[Ties]) -> set[tuple[int, int]]:
-    """Give the pairs of passes whose tiles have found one another."""
-    tiles: Counter[tuple[int, int]] = Counter()
-    for ties in found:
-        if len(ties):
-            tiles[int(ties.pass_a[0]), int(ties.pass_b[0])] += len(ties) // 3
-    return {pair for pair, count in tiles.items() if count >= _ENOUGH}
+def _matched(found: Sequence[Ties], a: Leg, b: Leg) -> Mask:
+    """Tell in which rows of a leg its bumps are known to lie on those of another."""
+    times = [
+        t.time_a[::3]
+        for t in found
+        if len(t) and (t.pass_a[0], t.pass_b[0]) == (a.number, b.number)
+    ]
+    known = np.sort(np.concatenate([np.zeros(0), *times]))
+    if len(known) < _ENOUGH:
+        return np.zeros(len(a.row_times), bool)
+    after = np.clip(np.searchsorted(known, a.row_times), 1, len(known) - 1)
+    away = np.minimum(np.abs(known[after] - a.row_times), np.abs(known[after - 1] - a.row_times))
+    near: Mask = away < _BESIDE
+    return near
 
 
 def _are_to_meet(a: Leg, b: Leg, *, within: bool) -> bool:
@@ -198,7 +266,7 @@ def _tie_legs(
     errors: Float[np.ndarray, "u m"],
     settings: AdjustSettings,
     logs: Sequence[Log],
-) -> list[Ties]:
+) -> list[tuple[Ties, Scalars]]:
     if not _meet(a.facets, b.facets, settings.reach):
         return []
     leg, layout = a.facets.leg, logs[0].layout
@@ -208,7 +276,7 @@ def _tie_legs(
         for start, size in zip(layout.starts, layout.sizes, strict=True)
     ]
     doubt = Doubt(state.paths[one], state.paths[other], shares[one], shares[other], settings.reach)
-    forward = state.paths[one].at(leg.row_times).rotations[:, :, 0]
+    forward = np.tile(leg_direction(state.paths[one], leg.row_times), (len(leg.row_times), 1))
     return [tie_tiles(a, b, settings.tile, doubt, forward)]
 
 
@@ -234,7 +302,7 @@ def _lay_finely(
     state: State,
     logs: Sequence[Log],
     legs: Sequence[Leg],
-    matched: set[tuple[int, int]],
+    found: Sequence[Ties],
     settings: AdjustSettings,
     tell: Callable[[str], None],
     *,
@@ -253,7 +321,7 @@ def _lay_finely(
                 sides[j],
                 reach,
                 most,
-                bumps_match=(legs[i].number, legs[j].number) in matched,
+                bumps_match=_matched(found, legs[i], legs[j]),
             )
             for i, j in combinations(range(len(legs)), 2)
             if (legs[i].number == legs[j].number or not within)

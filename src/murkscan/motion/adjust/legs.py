@@ -13,7 +13,7 @@ import numpy as np
 from jaxtyping import Float
 
 from ..._kernels.facets import fit_facets, sum_cells
-from ...types.arrays import Directions, Indices, Points, Scalars, SmallNumbers
+from ...types.arrays import Directions, Indices, Points, Scalars, SmallNumbers, Vector
 from ...types.navigation import Navigation
 from .path import Path, Poses
 
@@ -196,7 +196,7 @@ def make_facets(leg: Leg, path: Path) -> Facets:
         poses.positions - origin,
         num_rows * leg.num_columns,
     )
-    frames = _sight_axes(leg, rows)
+    frames = _sight_axes(leg, rows, leg_direction(path, leg.row_times))
     planes, middle = fit_facets(
         sums, num_rows, leg.num_columns, frames, _NEIGHBOURS, _JUMP * leg.size
     )
@@ -221,10 +221,17 @@ def make_facets(leg: Leg, path: Path) -> Facets:
     )
 
 
-def _sight_axes(leg: Leg, rows: Poses) -> Float[np.ndarray, "r 3 3"]:
+def leg_direction(path: Path, times: Scalars) -> Vector:
+    """Give the unit direction from where a leg begins to where it ends, in the world."""
+    first, last = path.at(times[[0, -1]]).positions
+    length = float(np.linalg.norm(last - first))
+    return (last - first) / length if length else np.array([1.0, 0.0, 0.0])
+
+
+def _sight_axes(leg: Leg, rows: Poses, forward: Vector) -> Float[np.ndarray, "r 3 3"]:
     """Give two axes across the line of sight of each row, and the one towards the sensor."""
     towards = -np.einsum("nij,nj->ni", rows.rotations, leg.row_points)
     towards /= np.maximum(np.linalg.norm(towards, axis=1, keepdims=True), 1e-12)
-    side = np.cross(towards, rows.rotations[:, :, 0])
+    side = np.cross(towards, forward)
     side /= np.maximum(np.linalg.norm(side, axis=1, keepdims=True), 1e-12)
     return np.stack([np.cross(side, towards), side, towards], axis=1)

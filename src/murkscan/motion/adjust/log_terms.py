@@ -166,13 +166,12 @@ class Log:
             turns = evaluate(path.knots, path.turns, times)
             sigma = widen * settings.attitude_wander
             parts.append(self._plain(turns, slopes_of_turn(poses, change), poses, sigma, []))
-        if log.position is None:
+        if log.position is None or log.accuracy.position_noise is None:
+            knows_depth = log.depth is not None and log.accuracy.depth_noise is not None
+            place = Place((0, 1) if knows_depth else (0, 1, 2))
             poses = path.at(np.array([path.knots.start]))
-            parts.append(
-                self._plain(
-                    poses.positions, Place((0, 1, 2)).slopes(path, poses), poses, _ORIGIN, []
-                )
-            )
+            origin = place.predict(path, poses)
+            parts.append(self._plain(origin, place.slopes(path, poses), poses, _ORIGIN, []))
         return parts
 
     def _plain(

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from jaxtyping import Bool
 from scipy.spatial import cKDTree
 
 from ...types.arrays import Directions, Indices, Scalars
@@ -10,6 +11,8 @@ from .legs import Facets
 from .ties import Ties
 from .tiles import make_heights
 
+Rows = Bool[np.ndarray, "rows"]
+"""Which rows of a leg's cells."""
 _PATCH = 16
 """Cells of a patch, along and across, over which a surface counts as plain or rough as a whole."""
 _AGREE = 0.8
@@ -68,7 +71,7 @@ def steady_normals(facets: Facets) -> tuple[Directions, Directions]:
     )
 
 
-def pair_facets(a: Side, b: Side, reach: float, most: int, *, bumps_match: bool) -> Ties:
+def pair_facets(a: Side, b: Side, reach: float, most: int, *, bumps_match: Rows) -> Ties:
     """Tie the facets of one leg to those of another that lie nearest.
 
     The direction is the mean normal of both, which takes the curve out of the distance between
@@ -80,9 +83,9 @@ def pair_facets(a: Side, b: Side, reach: float, most: int, *, bumps_match: bool)
         b: The other.
         reach: How far along the normal they may lie apart [m].
         most: Ties that are enough; of more, some are drawn, always the same.
-        bumps_match: Whether the legs lie within a bump's width of one another. Where that is not
-            known, bumps are noise, and ties say nothing of the shift along the surface: otherwise
-            they would hold the legs wherever they lie.
+        bumps_match: In which rows of the one leg they lie within a bump's width of one another.
+            Where that is not known, bumps are noise, and ties say nothing of the shift along the
+            surface: otherwise they would hold the legs wherever they lie.
     """
     first = _draw(np.arange(len(a.facets)), 2 * most)
     size = max(a.facets.leg.size, b.facets.leg.size)
@@ -103,14 +106,15 @@ def _draw(which: Indices, most: int) -> Indices:
 
 
 def _tie(
-    a: Side, b: Side, first: Indices, second: Indices, reach: float, *, bumps_match: bool
+    a: Side, b: Side, first: Indices, second: Indices, reach: float, *, bumps_match: Rows
 ) -> Ties:
     one, two = a.facets, b.facets
     size = max(one.leg.size, two.leg.size)
-    direction = (
-        a.directions[first] + b.directions[second]
-        if bumps_match
-        else a.smooth[first] + b.smooth[second]
+    match = bumps_match[one.row[first]]
+    direction = np.where(
+        match[:, None],
+        a.directions[first] + b.directions[second],
+        a.smooth[first] + b.smooth[second],
     )
     length = np.linalg.norm(direction, axis=1)
     direction /= np.maximum(length, 1e-12)[:, None]
@@ -119,10 +123,9 @@ def _tie(
     aside = between - off[:, None] * direction
     lateral = np.linalg.norm(aside, axis=1)
     kept = (length > 2 * _AGREE) & (np.abs(off) < reach) & (lateral < _BEYOND * size)
-    first, second, aside = first[kept], second[kept], aside[kept]
+    first, second, aside, match = first[kept], second[kept], aside[kept], match[kept]
     variance = _variance(one, first, aside) + _variance(two, second, aside)
-    if not bumps_match:
-        variance = variance + a.relief + b.relief
+    variance = variance + np.where(match, 0.0, a.relief + b.relief)
     count = len(first)
     return Ties(
         np.full(count, one.leg.number),

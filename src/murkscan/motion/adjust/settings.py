@@ -33,6 +33,9 @@ class AdjustSettings:
     uncertain: farther away more and more tiles look alike."""
     rounds: int = 5
     """How often tiles are looked for, at most: each time they are less stretched."""
+    cycles: int = 5
+    """How often tiles are looked for anew after facets have been paired, at most: what lies right
+    shows where its neighbours belong."""
     fine_rounds: int = 10
     """How often facets are paired, at most."""
     inner_rounds: int = 6

@@ -29,6 +29,9 @@ _FEWEST = 40
 """Facets below which a tile is none."""
 _FLATTEST = 0.05e-3
 """RMS of a relief below which there is nothing to find [m]."""
+_STRETCHES = (1.0, 0.8, 1.25, 0.65, 1.55)
+"""Lengths along the way that a tile may have, in the one it seems to have, in the order in which
+they are tried: a speed that is not known is off by so much."""
 _FAR = 6.0
 """Pixels beyond which tiles are looked for in pixels of twice the size."""
 _SIGMA_ASIDE = 0.35
@@ -91,7 +94,7 @@ def tie_tiles(
     tile: tuple[float, float],
     doubt: Doubt,
     forward: Float[np.ndarray, "r 3"],
-) -> Ties:
+) -> tuple[Ties, Scalars]:
     """Look for the tiles of one leg in another.
 
     Args:
@@ -100,13 +103,22 @@ def tie_tiles(
         tile: Size along and across the way [m].
         doubt: How far from where it lies now a tile may be.
         forward: Direction of the way at each row of `a`.
+
+    Returns:
+        The ties of those that were found, and the times [s] of all that have relief to be found by,
+        and lie on the other leg.
     """
-    found = []
+    found, looked_for = [], []
     for which in _cut(a.facets, tile):
-        place = _find(a, b, which, tile, doubt, forward)
+        pair = _lay_side_by_side(a, b, which, tile, doubt, forward)
+        if pair is None:
+            continue
+        looked_for.append(pair.time)
+        place = next(filter(None, (_find(b, pair, stretch) for stretch in _STRETCHES)), None)
         if place is not None:
             found.append(place)
-    return _as_ties(a.facets, b, _consistent(found, a.facets.leg.size), a.facets.leg.size)
+    ties = _as_ties(a.facets, b, _consistent(found, a.facets.leg.size), a.facets.leg.size)
+    return ties, np.array(looked_for)
 
 
 def _cut(facets: Facets, tile: tuple[float, float]) -> list[Indices]:
@@ -122,20 +134,39 @@ def _cut(facets: Facets, tile: tuple[float, float]) -> list[Indices]:
     return [part for part in parts if len(part) >= _FEWEST]
 
 
-def _find(
+@dataclass(frozen=True, eq=False)
+class _Pair:
+    """A tile and what of the other leg lies about it, both in the tile's frame."""
+
+    which: Indices
+    """Facets of the tile."""
+    time: float
+    frame: Float[np.ndarray, "3 3"]
+    own: Points
+    """Facets of the tile [m]."""
+    other: Float[np.ndarray, "k 3"]
+    """Facets of the other leg [m]."""
+    heights: Scalars
+    others_heights: Float[np.ndarray, " k"]
+    reach: Float[np.ndarray, "2"]
+    pitch: float
+
+
+def _lay_side_by_side(
     a: Relief,
     b: Relief,
     which: Indices,
     tile: tuple[float, float],
     doubt: Doubt,
     forward: Float[np.ndarray, "r 3"],
-) -> _Found | None:
+) -> _Pair | None:
+    """Gather what a tile is to be compared with; None where it is flat, or off the other leg."""
     facets, pitch = a.facets, max(a.facets.leg.size, b.facets.leg.size)
     centre = facets.points[which].mean(axis=0)
     frame = _frame(facets.normals[which].mean(axis=0), forward[facets.row[which[0]]])
     half = float(np.hypot(*tile)) / 2
     nearest = b.tree.query(centre, distance_upper_bound=half + doubt.most)[1]
-    if nearest == b.tree.n:
+    if nearest == b.tree.n or float(np.std(a.heights[which])) < _FLATTEST:
         return None
     reach = doubt.reach(
         centre,
@@ -144,43 +175,52 @@ def _find(
         frame[:2],
         4 * pitch,
     )
-    if reach.max() > _FAR * pitch:
-        pitch *= 2
     there = np.asarray(b.tree.query_ball_point(centre, half + float(np.hypot(*reach))), np.int64)
-    if len(there) < _FEWEST:
-        return None
     # Another side of a thin plate is not what is looked for.
     there = there[b.facets.normals[there] @ frame[2] > 0]
-    own = (facets.points[which] - centre) @ frame.T
-    other = (b.facets.points[there] - centre) @ frame.T
+    if len(there) < _FEWEST:
+        return None
+    return _Pair(
+        which,
+        float(facets.leg.row_times[facets.row[which]].mean()),
+        frame,
+        (facets.points[which] - centre) @ frame.T,
+        (b.facets.points[there] - centre) @ frame.T,
+        a.heights[which],
+        b.heights[there],
+        reach,
+        2 * pitch if reach.max() > _FAR * pitch else pitch,
+    )
+
+
+def _find(b: Relief, pair: _Pair, stretch: float) -> _Found | None:
+    """Find a tile, stretched along the way by what its speed may be off."""
+    own, pitch = pair.own * [stretch, 1.0, 1.0], pair.pitch
     corner, size = own[:, :2].min(axis=0), np.ptp(own[:, :2], axis=0)
     shape = np.ceil(size / pitch).astype(int) + 2
-    margin = np.ceil(reach / pitch).astype(int)
-    small = draw_relief(
-        own[:, 0] - corner[0], own[:, 1] - corner[1], a.heights[which], pitch, *shape
-    )
+    margin = np.ceil(pair.reach / pitch).astype(int)
+    small = draw_relief(own[:, 0] - corner[0], own[:, 1] - corner[1], pair.heights, pitch, *shape)
     start = corner - margin * pitch
     large = draw_relief(
-        other[:, 0] - start[0],
-        other[:, 1] - start[1],
-        b.heights[there],
+        pair.other[:, 0] - start[0],
+        pair.other[:, 1] - start[1],
+        pair.others_heights,
         pitch,
         *(shape + 2 * margin),
     )
     filled = np.isfinite(small)
     if filled.sum() < _FEWEST / 2 or np.nanstd(small) < _FLATTEST:
         return None
-    scores = correlate(small, large, int(_FILLED * filled.sum()))
-    peak = _peak(scores)
+    peak = _peak(correlate(small, large, int(_FILLED * filled.sum())))
     if peak is None:
         return None
     moved, score = (np.array(peak[:2]) - margin) * pitch, peak[2]
-    off = _offset_along_normal(own, other, moved, pitch)
+    off = _offset_along_normal(own, pair.other, moved, pitch)
     if off is None:
         return None
+    frame = pair.frame
     shift = moved[0] * frame[0] + moved[1] * frame[1] + off * frame[2]
-    time = float(facets.leg.row_times[facets.row[which]].mean())
-    return _Found(which, frame, shift, score, time)
+    return _Found(pair.which, frame, shift, score, pair.time)
 
 
 def _frame(normal: Vector, forward: Vector) -> Float[np.ndarray, "3 3"]:

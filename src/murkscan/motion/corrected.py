@@ -1,0 +1,109 @@
+"""A motion corrected by what the scan's lasers, or its legs, saw of the same places."""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from ..types.arrays import Scalars
+from ..types.laser import Axis
+from ..types.pose import Pose
+from ..types.profile import Profile
+from ..types.trajectory import Trajectory
+from .adjust import Adjusted, adjust_passes
+from .adjust.passes import make_pass
+from .adjust.sureness import Sureness, judge_directions
+from .measured import Measured
+
+_FEWEST = 20
+"""Profiles below which there is nothing to correct: a spline of some pieces."""
+_BLIND = 1.5
+"""Longest stretch [s] whose relief may lie on something else than its like: three tiles in a row.
+Beyond, the way has settled in a wrong place there (`docs/benchmarks/trajectory.md`)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Correction:
+    """How a scan's own surface corrects its log."""
+
+    trajectory: Trajectory
+    """world_from_camera, with its errors."""
+    moved: Scalars
+    """How far each pose was moved [m]."""
+    sureness: tuple[Sureness, ...]
+    instruments: dict[str, tuple[float, float, float]]
+    """Errors of instruments: found, its standard deviation, and the stated one, in m, s and rad."""
+    num_tiles: int
+    """Pieces of surface that were found twice by their relief."""
+    blind: float
+    """Longest stretch [s] whose relief does not lie on its like in the end."""
+
+    @property
+    def is_sound(self) -> bool:
+        """Whether it may be believed: it has not settled in a wrong place."""
+        return self.blind <= _BLIND
+
+
+def correct_motion(
+    measured: Measured,
+    parts: Iterable[Profile],
+    logged: Trajectory,
+    axes: Sequence[Axis],
+    *,
+    tell: Callable[[str], None] = lambda words: None,
+) -> Correction | None:
+    """Correct a scan's trajectory; None where it saw no place twice.
+
+    Args:
+        measured: What is known of the motion.
+        parts: The profiles, in order of frames.
+        logged: world_from_camera as logged, at the times of the frames that have a pose.
+        axes: The camera axis along which each laser sits.
+        tell: Is told what is being done.
+    """
+    times, mount = logged.times, measured.vehicle_from_camera
+    one = make_pass(parts, times, axes, mount, measured.navigation)
+    if len(times) < _FEWEST or len(one.points) == 0:
+        return None
+    adjusted = adjust_passes([one], tell=tell)
+    if not any(map(len, adjusted.groups)):
+        return None
+    ways = adjusted.trajectory(0, times), adjusted.trajectory_as_logged(0, times)
+    found, blind = (_as_camera(way, measured) for way in ways)
+    return Correction(
+        found,
+        np.linalg.norm(found.positions - logged.positions, axis=1),
+        tuple(judge_directions(blind, found, found.line_of_sight())),
+        _judge_instruments(adjusted),
+        adjusted.num_tiles,
+        adjusted.blind,
+    )
+
+
+def _judge_instruments(adjusted: Adjusted) -> dict[str, tuple[float, float, float]]:
+    log = adjusted.logs[0]
+    stated = {log.layout.name(place): sigma for place, sigma in log.priors()}
+    return {
+        name: (value, sigma, stated[name])
+        for name, (value, sigma) in adjusted.instrument_errors(0).items()
+    }
+
+
+def _as_camera(way: Trajectory, measured: Measured) -> Trajectory:
+    """Give world_from_camera of world_from_vehicle, in the scan's own world."""
+    camera = way.follow_mount(measured.vehicle_from_camera)
+    if measured.is_placed:
+        return replace(camera, positions=camera.positions + measured.origin)
+    return _from_first(camera)
+
+
+def _from_first(way: Trajectory) -> Trajectory:
+    """Count a way from its first pose, which then has no error."""
+    turn = Rotation.from_quat(way.quaternions[0], scalar_first=True).as_matrix()
+    errors, first = way.errors, way.positions[0]
+    if errors is not None:
+        arms = (way.positions - first)[:, :, None]
+        shifts = errors[:, :3] - errors[:1, :3] - np.cross(errors[:1, 3:], arms, axis=1)
+        errors = np.concatenate([shifts, errors[:, 3:] - errors[:1, 3:]], axis=1)
+    return replace(way, errors=errors).carry(Pose(turn.T, -turn.T @ first))

@@ -1,0 +1,132 @@
+"""What a motion is known by: measurements with their accuracy, which a scan may correct."""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial.transform import Rotation
+
+from ..types.arrays import Vector
+from ..types.navigation import Navigation, NavigationAccuracy, Readings
+from ..types.pose import Pose
+from ..types.short_repr import ShortRepr
+from ..types.trajectory import Trajectory
+
+Shift = Float[np.ndarray, "_"] | float
+"""Of one reading's columns."""
+
+_RATE = 0.1
+"""Time between the readings that stand for a speed which is about known [s]."""
+_WANDER, _TIME = 0.2, 2.5
+"""How such a speed wanders, as a share of it, and over which time [s]: waves and a pilot's hand."""
+_CLOCK = 0.5
+"""Standard deviation of a log's clock of which nothing is stated [s]: recorders stamp pictures
+when they arrive."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Measured(ShortRepr):
+    """A vehicle's instruments, by the recording's clock, and where its camera sits."""
+
+    navigation: Navigation
+    vehicle_from_camera: Pose
+    is_placed: bool
+    """Whether the world is the log's own; otherwise it is the camera's first frame."""
+    origin: Vector = field(default_factory=lambda: np.zeros(3))
+    """Where in the log's world the measured places count from [m]: near the scan, since a spline
+    about coordinates of maps would lose digits."""
+
+
+def measure_speed(speed: float, sigma: float, axis: int) -> Measured | None:
+    """Take a speed along a camera axis for a measurement; None where it is exact.
+
+    Args:
+        speed: Of the camera [m/s]; negative for the other way.
+        sigma: Its standard deviation, as a share of it.
+        axis: 0, 1, 2 for x, y, z.
+    """
+    if not sigma > 0:
+        return None
+    ahead = np.sign(speed) * np.eye(3)[axis]
+    other = np.eye(3)[2 if axis != 2 else 1]
+    vehicle_from_camera = np.stack([ahead, np.cross(other, ahead), other])
+    navigation = Navigation(NavigationAccuracy(speed=sigma), speed=abs(speed))
+    return Measured(navigation, Pose(vehicle_from_camera, np.zeros(3)), is_placed=False)
+
+
+def measure_along_attitude(
+    navigation: Navigation, velocity: Vector, sigma: float, span: tuple[float, float]
+) -> Navigation:
+    """Put a speed that is about known in place of measured velocities and places.
+
+    White noise as strong at low frequencies stands for its wandering: σ² = 2·s²·τ/dt between
+    readings dt apart, for a wander of s over a time τ.
+
+    Args:
+        navigation: What was measured beside.
+        velocity: Along the vehicle's own axes [m/s].
+        sigma: Standard deviation of its mean, as a share of it.
+        span: When it begins and ends, by the same clock [s].
+    """
+    times = np.arange(span[0], span[1] + _RATE, _RATE)
+    speed = float(np.linalg.norm(velocity))
+    accuracy = replace(
+        navigation.accuracy,
+        velocity_noise=_WANDER * speed * float(np.sqrt(2 * _TIME / _RATE)),
+        velocity_bias=sigma * speed,
+        position_noise=None,
+    )
+    readings = Readings(times, np.tile(velocity, (len(times), 1)))
+    return replace(navigation, accuracy=accuracy, velocity=readings, position=None)
+
+
+def measure_poses(log: Trajectory, accuracy: NavigationAccuracy) -> Navigation | None:
+    """Take a log of poses for measurements; None where its accuracy says nothing of places.
+
+    Without noise of positions stated they count as summed up from velocities along the attitude.
+    """
+    turns = Rotation.from_quat(log.quaternions, scalar_first=True)
+    attitude = Readings(log.times, turns.as_euler("ZYX")[:, ::-1])
+    navigation = Navigation(
+        accuracy, attitude=attitude, depth=Readings(log.times, log.positions[:, 2:])
+    )
+    if accuracy.position_noise:
+        return replace(navigation, position=Readings(log.times, log.positions))
+    if not accuracy.velocity_noise or len(log.times) < 2:
+        return None
+    steps = np.diff(log.positions, axis=0) / np.diff(log.times)[:, None]
+    middles = (log.times[1:] + log.times[:-1]) / 2
+    attitudes = Rotation.from_quat(log.at(middles).quaternions, scalar_first=True)
+    return replace(navigation, velocity=Readings(middles, attitudes.inv().apply(steps)))
+
+
+def by_recording(navigation: Navigation, start: float, mount: Pose) -> Measured:
+    """Count a log's times by the recording's clock, and its places from the first one.
+
+    Args:
+        navigation: What was measured, by the log's clock.
+        start: What the log's clock shows when recording time is 0 [s].
+        mount: vehicle_from_camera.
+    """
+    origin = np.zeros(3)
+    if navigation.position is not None and len(navigation.position):
+        origin = navigation.position.values[0]
+    accuracy = navigation.accuracy
+    if not accuracy.clock_offset:
+        accuracy = replace(accuracy, clock_offset=_CLOCK)
+
+    def move(readings: Readings | None, shift: Shift = 0.0) -> Readings | None:
+        return (
+            None if readings is None else Readings(readings.times - start, readings.values - shift)
+        )
+
+    moved = replace(
+        navigation,
+        accuracy=accuracy,
+        attitude=move(navigation.attitude),
+        rates=move(navigation.rates),
+        velocity=move(navigation.velocity),
+        depth=move(navigation.depth, origin[2:]),
+        position=move(navigation.position, origin),
+    )
+    return Measured(moved, mount, is_placed=True, origin=origin)
