@@ -9,6 +9,7 @@ from murkscan.live import (
     Look,
     RecentLooks,
     draw_picture,
+    find_calibrated_range,
     find_working_range,
     gauge_disk,
     gauge_speed,
@@ -29,7 +30,7 @@ def look(depth=0.5, signal=100.0, points=90, time=0.0):
 
 
 @pytest.mark.parametrize(
-    ("depth", "state"), [(0.31, "too near"), (0.5, "good"), (0.99, "too far"), (2.0, "too far")]
+    ("depth", "state"), [(0.31, "too near"), (0.5, "good"), (0.93, "too far"), (2.0, "too far")]
 )
 def test_the_stand_off_is_judged_by_the_working_range(depth, state):
     gauge = gauge_stand_off([look(depth)] * 5, (0.3, 1.0), None)
@@ -44,9 +45,24 @@ def test_murky_water_shortens_the_working_range():
 
 def test_the_working_range_is_where_the_sheet_crosses_the_picture():
     near, far = find_working_range(air_rig(baseline=0.25, distance=0.5), 0)
+    assert gauge_stand_off([look(0.84)], (near, far), None).state == "good"
     # Equation (4) at the lower and upper rows: Z = b f / (f cot θ − y), without an end above.
     assert near == pytest.approx(0.25 * 554 / (554 * 0.5 + 287.5), rel=1e-6)
     assert far == pytest.approx(20.0)
+
+
+def test_the_calibrated_range_is_that_of_the_laser_s_boards():
+    def errors(laser, *depths):
+        what = f"a point of laser {laser}"
+        return [{"what": what, "distance_mm": d, "sigma_mm": 0.1} for d in depths]
+
+    record = {
+        "camera": {"errors": [{"what": "a flat shape", "distance_mm": 100, "sigma_mm": 1}]},
+        "laser": {"0": {"errors": errors(0, 400, 600.0, 900)}, "1": {"errors": errors(1, 500)}},
+    }
+    assert find_calibrated_range(record, 0) == (0.4, 0.9)
+    assert find_calibrated_range(record, 1) is None
+    assert find_calibrated_range({}, 0) is None
 
 
 def test_speed_is_judged_by_what_the_spacing_needs():

@@ -75,6 +75,8 @@ def live(
     motion.check()
     with progress_bars():
         from ..io.rig_toml import load_rig
+        from ..live import find_calibrated_range
+        from ..project.origin import read_calibration
         from ..survey.live import run_live
         from ..survey.live_settings import LiveSettings
         from .summary import print_summary
@@ -87,6 +89,7 @@ def live(
             make_method("ray-sheet"),
             lasers=laser,
             spacing=spacing_mm / 1e3,
+            working=find_calibrated_range(read_calibration(rig), min(laser, default=0)),
             fields=fields,
             timeout=timeout,
             patience=patience,

@@ -5,7 +5,6 @@ from .folder import LiveFolder as LiveFolder
 from .folder import LivePoints as LivePoints
 from .gap_map import GapMap as GapMap
 from .gauges import Look as Look
-from .gauges import find_working_range as find_working_range
 from .gauges import gauge_disk as gauge_disk
 from .gauges import gauge_speed as gauge_speed
 from .gauges import gauge_stand_off as gauge_stand_off
@@ -18,3 +17,5 @@ from .spread import SpreadFrames as SpreadFrames
 from .status import LiveStatus as LiveStatus
 from .thinned import thin_points as thin_points
 from .watch import PictureWatch as PictureWatch
+from .working_range import find_calibrated_range as find_calibrated_range
+from .working_range import find_working_range as find_working_range

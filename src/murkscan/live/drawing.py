@@ -9,10 +9,15 @@ from ..types.frame import Frame
 _WIDEST = 960
 """Width up to which pictures are shown [px]."""
 _GREEN = (0, 230, 120)
+_DIMMEST, _BRIGHT = 64.0, 200.0
+"""Level from which a picture is brightened, under a stripe, so that this is its brightest part, and
+that level [grey levels]; as the scan's overlays."""
 
 
 def draw_picture(frame: Frame, stripe: Pixels | None = None) -> ColourImage:
-    """Draw a frame, a field at the height of its full frame, with stripe centres over it.
+    """Draw a frame, a field at the height of its full frame.
+
+    With stripe centres over it a dark one is brightened.
 
     Args:
         frame: The frame.
@@ -26,8 +31,12 @@ def draw_picture(frame: Frame, stripe: Pixels | None = None) -> ColourImage:
     grey = (frame.image >> shift).astype(np.uint8)
     size = (max(round(width * scale), 1), max(round(height * scale), 1))
     small = cv2.resize(grey, size, interpolation=cv2.INTER_AREA if scale < 1 else cv2.INTER_LINEAR)
-    picture = cv2.cvtColor(small, cv2.COLOR_GRAY2RGB)
-    if stripe is not None and len(stripe):
+    if stripe is None:
+        return cv2.cvtColor(small, cv2.COLOR_GRAY2RGB)
+    top = max(float(np.quantile(small, 0.999)), _DIMMEST)
+    bright = np.clip(small * (_BRIGHT / top), 0, 255).astype(np.uint8)
+    picture = cv2.cvtColor(bright, cv2.COLOR_GRAY2RGB)
+    if len(stripe):
         u, v = np.rint((stripe + 0.5) * scale - 0.5).astype(int).T
         inside = (u >= 0) & (u < size[0]) & (v >= 0) & (v < size[1])
         picture[v[inside], u[inside]] = _GREEN

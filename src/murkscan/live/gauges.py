@@ -6,13 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..optics import back_project, intersect_rays_with_sheet, refractive_index
 from ..types.background import Attenuation
 from ..types.frame import Frame
 from ..types.laser import Axis
 from ..types.profile import Profile
-from ..types.rig import Rig
 from .status import Disk, Speed, StandOff, StripeStrength, WaterGauge
+from .working_range import FARTHEST
 
 HIDDEN = 5.0
 """Standard deviations of a pixel's noise below which a stripe may be lost in it; as the report
@@ -22,9 +21,8 @@ _WEAK = 2.0
 _SEEN = 0.02
 """Share of the scan lines below which a frame shows no stripe; particles make some points."""
 _MARGIN = 0.05
-"""Share of the working range at either end in which the stand-off is not good."""
-_FARTHEST = 20.0
-"""What lies farther was never seen in water [m]."""
+"""Share of the working range at either end in which the stand-off is not good, counted in inverse
+depth: as the stripe moves across the picture."""
 _LOW = 600.0
 """Time of recording below which room is short [s]."""
 FULL = 200e6
@@ -76,27 +74,6 @@ class Look:
         return self.points >= _SEEN * self.num_lines
 
 
-def find_working_range(rig: Rig, laser: int) -> tuple[float, float]:
-    """Compute between which depths the sheet crosses the picture [m], along its middle scan line.
-
-    Args:
-        rig: The rig.
-        laser: Number of the laser.
-    """
-    at = "xy".index(rig.laser(laser).axis)
-    length = rig.camera.size[at]
-    pixels = np.empty((length, 2))
-    pixels[:, 1 - at] = (rig.camera.size[1 - at] - 1) / 2
-    pixels[:, at] = np.arange(length)
-    index = refractive_index(rig.water, rig.wavelength)
-    rays = back_project(rig.camera, pixels, index)
-    depths = intersect_rays_with_sheet(rays, rig.lasers[laser], index)[:, 2]
-    depths = depths[np.isfinite(depths) & (depths > 0)]
-    if len(depths) == 0:
-        return 0.0, 0.0
-    return float(depths.min()), float(min(depths.max(), _FARTHEST))
-
-
 def gauge_stand_off(
     looks: Sequence[Look], working: tuple[float, float], reach: float | None
 ) -> StandOff:
@@ -112,10 +89,11 @@ def gauge_stand_off(
     depths = [look.depth for look in looks if look.points]
     if not depths:
         return StandOff(None, near, far)
-    value, margin = float(np.median(depths)), _MARGIN * (far - near)
-    if value < near + margin:
+    value = float(np.median(depths))
+    place = (1 / value - 1 / far) / (1 / near - 1 / far) if near < far else 0.5
+    if place > 1 - _MARGIN:
         return StandOff(value, near, far, "too near")
-    return StandOff(value, near, far, "too far" if value > far - margin else "good")
+    return StandOff(value, near, far, "too far" if place < _MARGIN else "good")
 
 
 def gauge_speed(value: float | None, rate: float | None, wanted: float) -> Speed:
@@ -173,7 +151,7 @@ def gauge_water(attenuation: Attenuation | None, looks: Sequence[Look], noise: f
 
 def _fade(here: float, headroom: float, attenuation: float) -> float:
     """Find the range at which a stripe of a headroom at a range is at the limit [m]."""
-    low, high = 0.0, _FARTHEST
+    low, high = 0.0, FARTHEST
     for _ in range(50):
         middle = (low + high) / 2
         left = math.log(max(headroom, 1e-9)) - 2 * attenuation * (middle - here)

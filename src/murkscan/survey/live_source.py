@@ -93,7 +93,8 @@ class RecordedSource(LiveSource):
         self._timeout, self._patience, self._fields = timeout, patience, fields
         self._coded = Mailbox[tuple[int, CodedPicture]](_CODED)
         self._images = Mailbox[tuple[np.ndarray, ArrivedPicture]](_IMAGES)
-        self._number, self._earlier = 0, Recorded()
+        there = sum(chapter.stat().st_size for chapter in folder.chapters)
+        self._number, self._earlier = 0, Recorded(bytes=there)
 
     def _give(self, finder: LiveFinder) -> None:
         decoding = threading.Thread(target=self._decode, args=(finder,), daemon=True)

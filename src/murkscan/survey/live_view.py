@@ -75,7 +75,7 @@ class LiveView:
         self._follower: AbstractFollower | None = None
         self._laser, self._spacing = laser, spacing
         self._axis = rig.laser(laser).axis
-        self._working = working or find_working_range(rig, laser)
+        self._working = _narrow(find_working_range(rig, laser), working)
         self._recent, self._waiting = RecentLooks(), list[Found]()
         self._frames = FrameTimes(np.zeros(0, np.uint32), np.zeros(0))
         self._ranges, self._signals = EvenSample(_SAMPLE), EvenSample(_SAMPLE)
@@ -232,6 +232,15 @@ class LiveView:
 
     def _reach(self, noise: float) -> Reach:
         return Reach.from_points(self._ranges.values(), self._signals.values(), noise=noise)
+
+
+def _narrow(
+    crossed: tuple[float, float], proven: tuple[float, float] | None
+) -> tuple[float, float]:
+    """Keep of the depths at which the sheet crosses the picture those that were proven."""
+    if proven is None or not max(crossed[0], proven[0]) < min(crossed[1], proven[1]):
+        return crossed
+    return max(crossed[0], proven[0]), min(crossed[1], proven[1])
 
 
 def _murk(background: Background | None) -> Attenuation | None:
