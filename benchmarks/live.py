@@ -95,7 +95,7 @@ def main() -> None:
         "share of a core that it needs tells more than the delay. Behind is the time from the "
         "arrival of a frame's data to its profile that 95 % of the frames keep; the frames that "
         "are looked ahead for are in it. Resident grows from a third of the stream to its end.\n\n"
-        "Gaps are compared in cells of 5 mm over the part that the preview has seen of a dive whose "
+        "Gaps are compared in cells of 5 mm over what the preview has seen of a dive whose "
         "laser goes out for 0.4 s every 2 s, with a camera of 360 × 288 px: the share of the cells "
         "that are gaps in either map, the preview's or the scan's, that are in both."
     )
@@ -257,7 +257,7 @@ def _compare(out: Path) -> list[Figure]:
 
 
 def _halved(scene: Scene) -> Scene:
-    """The same scene through a camera of a quarter of the pixels, which any machine keeps up with."""
+    """The same scene through a camera of a quarter of the pixels, which is looked at sooner."""
     camera = scene.rig.camera
     width, height = (side // 2 for side in camera.size)
     f, g = camera.focal_length
