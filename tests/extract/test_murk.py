@@ -300,6 +300,7 @@ def test_a_stripe_that_no_scan_line_shows_is_found_by_many_together():
     murk = Murk()
     background = murk.learn(frames, RIG)
     assert background.search.least < murk.min_score
+    assert murk.learn_soon(frames, RIG).search.least == murk.min_score
     stripes = list(murk.extract(frames, RIG, background))
     off = np.concatenate(
         [s.pixels[:, 1] - _hull(0.1 * i)[s.pixels[:, 0].astype(int)] for i, s in enumerate(stripes)]

@@ -33,6 +33,14 @@ class AbstractExtractor(abc.ABC):
         """
         return learn_noise(frames)
 
+    def learn_soon(self, frames: Sequence[Frame], rig: Rig, *, laser: int = 0) -> Background:
+        """Learn what suffices to show a dive while it goes on; arguments as of `learn`.
+
+        As `learn`, unless that may find that frames are to be looked at more closely than their
+        coming allows.
+        """
+        return self.learn(frames, rig, laser=laser)
+
     @abc.abstractmethod
     def extract(
         self, frames: Iterable[Frame], rig: Rig, background: Background, *, laser: int = 0

@@ -92,6 +92,19 @@ class Murk(AbstractExtractor):
 
     def learn(self, frames: Sequence[Frame], rig: Rig, *, laser: int = 0) -> Background:
         """Learn the noise of each grey level, the stripe's shape, and how murky the water is."""
+        return self._learn(frames, rig, laser, self._learn_depth)
+
+    def learn_soon(self, frames: Sequence[Frame], rig: Rig, *, laser: int = 0) -> Background:
+        """Learn the same without a deeper look; see `AbstractExtractor.learn_soon`."""
+        return self._learn(frames, rig, laser, self._learn_rates)
+
+    def _learn(
+        self,
+        frames: Sequence[Frame],
+        rig: Rig,
+        laser: int,
+        learn_depth: Callable[[Sequence[ScanLines], FilterBank, Rig], "_Learnt"],
+    ) -> Background:
         axis = rig.laser(laser).axis
         levels = learn_levels([f.image if axis == "y" else f.image.T for f in frames])
         if axis == "y":
@@ -101,7 +114,7 @@ class Murk(AbstractExtractor):
         look = [see(frame, fixed=fixed) for frame in _thin(frames)]
         if any(one.levels.any() for one in fixed):
             shapes = self._learn_shapes(look, levels, self._plain)
-        learnt = self._learn_depth(look, FilterBank.of(shapes, levels, self._plain), rig)
+        learnt = learn_depth(look, FilterBank.of(shapes, levels, self._plain), rig)
         background = Background(
             learn_noise(frames).noise,
             levels,

@@ -59,7 +59,7 @@ class _Learn:
         if self.gives_way:
             with suppress(OSError, AttributeError):
                 os.nice(_NICE)
-        return self.extractor.learn(frames, self.rig, laser=self.laser)
+        return self.extractor.learn_soon(frames, self.rig, laser=self.laser)
 
 
 class LiveFinder:
