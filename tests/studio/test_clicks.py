@@ -112,8 +112,12 @@ def test_pages_fit_a_phone_and_show_names_as_they_are(opened, folder, name):
     assert faults == []
 
 
-def test_a_studio_that_is_gone_is_told_of(opened):
+def test_a_studio_that_is_gone_is_told_of_and_its_page_goes_on_when_it_is_back(opened, folder):
     page, _, process = opened
     process.kill()
+    process.wait()
     page.locator("#gone").wait_for(timeout=PATIENCE)
     assert "does not answer" in page.locator("#gone").inner_text()
+    with serving(folder) as (address, _):
+        assert page.url.startswith(address)
+        page.locator("#gone").wait_for(state="hidden", timeout=PATIENCE)

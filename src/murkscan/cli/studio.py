@@ -27,7 +27,7 @@ def studio(
     host
         Address at which to listen; only this machine can open the page unless another is given.
     port
-        Port; a free one unless given.
+        Port; that of last time, or a free one, unless given.
     no_browser
         Print the address only.
     """

@@ -1,8 +1,10 @@
 """The studio's server: bound to this machine, one a folder, ended by Ctrl-C."""
 
+import re
 import secrets
 import socket
 from collections.abc import Callable
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 import uvicorn
@@ -24,7 +26,7 @@ def serve(
     Args:
         folder: What to show; made where it is missing.
         host: Address of this machine at which to listen.
-        port: Port; 0 takes a free one.
+        port: Port; 0 takes that of the studio that was here before, or a free one.
         tell: Told the address to open, which carries the token, and at the end what goes on.
 
     Raises:
@@ -32,9 +34,11 @@ def serve(
         DeviceError: The port is taken, or the folder cannot be written.
     """
     sandbox = Sandbox.open(folder)
-    token = secrets.token_urlsafe(_TOKEN_BYTES)
-    with hold(sandbox.own(), ("studio", str(folder))), _listen(host, port) as listening:
+    with hold(sandbox.own(), ("studio", str(folder))), ExitStack() as stack:
+        before, token = _recall(sandbox.own("address"))
+        listening = stack.enter_context(_listen_again(host, port, before))
         place = listening.getsockname()[1]
+        _remember(sandbox.own("address"), place, token)
         tell(f"http://{host}:{place}/{token}/")
         app = make_app(folder, token, hosts=(host,))
         config = uvicorn.Config(
@@ -45,6 +49,33 @@ def serve(
     running = [job["text"] for job in Jobs(sandbox).newest() if job["state"] == "running"]
     for text in running:
         tell(f"`{text}` goes on without the studio; begin the studio again to see or stop it.")
+
+
+def _recall(path: Path) -> tuple[int, str]:
+    """Give the port and the token of the studio that was here before, or a new token."""
+    with suppress(OSError):
+        known = re.fullmatch(r"(\d{1,5}) ([\w-]{20,})\n", path.read_text("ascii", "replace"))
+        if known is not None:
+            return int(known[1]), known[2]
+    return 0, secrets.token_urlsafe(_TOKEN_BYTES)
+
+
+def _remember(path: Path, port: int, token: str) -> None:
+    """Keep the address, so that pages that are open go on when the studio is begun again.
+
+    Nobody else on this machine may read it.
+    """
+    path.unlink(missing_ok=True)
+    path.touch(mode=0o600)
+    path.write_text(f"{port} {token}\n", "ascii")
+
+
+def _listen_again(host: str, port: int, before: int) -> socket.socket:
+    """Listen at the port that was asked for, else at that of before, else at a free one."""
+    if port == 0 and before:
+        with suppress(DeviceError):
+            return _listen(host, before)
+    return _listen(host, port)
 
 
 def _listen(host: str, port: int) -> socket.socket:
