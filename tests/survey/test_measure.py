@@ -59,6 +59,13 @@ def test_a_measure_is_printed_and_written_with_units_and_interval(scanned, capsy
     assert found["quantities"]["distance_m"]["sigma_common"] > 0  # the step is known to 1 %
 
 
+def test_a_plane_through_a_hull_says_that_it_is_none(scanned, capsys):
+    assert measure(scanned, "plane", "--name", "whole") == 0
+    (said,) = read(scanned, "whole")["remarks"]
+    assert "lie" in said
+    assert said in capsys.readouterr().out
+
+
 def test_out_and_what_may_come_in_either_order(scanned):
     part = ("--near-m", middle(scanned), "--within-mm", "30", "--name", "other")
     assert run(["measure", "plane", str(scanned), *part]) == 0
@@ -68,7 +75,7 @@ def test_out_and_what_may_come_in_either_order(scanned):
 def test_an_acceptance_test_says_with_what_and_how_fast_it_was_scanned(scanned, tmp_path):
     (tmp_path / "plate.toml").write_text(
         f'format = 1\nname = "P"\n[[plate]]\nname = "P"\nnear_m = [{middle(scanned)}]\n'
-        "within_mm = 60",
+        "within_mm = 900",
         "utf-8",
     )
     assert run(["accept", str(scanned), "--test", str(tmp_path / "plate.toml")]) == 0

@@ -133,6 +133,8 @@ def _print_dents(search: "DentSearch") -> None:
             f"{search.num_unsure} more place{'s depart' if search.num_unsure > 1 else ' departs'}, "
             "by a depth that the scan does not tell: at a rim, or no more than its own ±95%."
         )
+    for text in search.remarks:
+        say(text)
     say(
         f"Averaged over the smallest dent, the scan scatters by {1e3 * search.noise:.3f} mm; what "
         f"departs by more than {1e3 * search.threshold:.3f} mm is told."

@@ -114,7 +114,7 @@ def print_measurement(
     rows = [_row(quantity) for quantity in found.quantities]
     columns = (found.kind, "value", "±95%", "1σ own", "1σ common", "unit")
     print_table("", columns, rows)
-    for text in list_unstated(Project(out)):
+    for text in (*found.remarks, *list_unstated(Project(out))):
         say(text)
     tell("meaning", _MEANING)
     tell("made", *(str(out / "measure" / f"{name}.{kind}") for kind in ("json", *suffixes)))

@@ -22,6 +22,7 @@ from .form import measure_flatness as measure_flatness
 from .form import measure_form as measure_form
 from .histogram import draw_histogram as draw_histogram
 from .lengths import require_dent_sizes as require_dent_sizes
+from .remarks import remark_on_smooth as remark_on_smooth
 from .sample import Sample as Sample
 from .section import cut_section as cut_section
 from .section import measure_section as measure_section

@@ -54,6 +54,8 @@ class DentSearch:
     """Standard deviation of the map [m]."""
     num_unsure: int = 0
     """Places beyond the threshold whose depth is not told: at a rim, or by no more than chance."""
+    remarks: tuple[str, ...] = ()
+    """Why the search means less than it says, and what to do; sentences for the user."""
 
 
 def find_dents(

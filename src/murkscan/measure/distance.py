@@ -8,6 +8,7 @@ from ..types.arrays import Indices, Points, Vector
 from ..types.measurement import Measurement
 from ..types.quantity import Quantity
 from .noise import NEIGHBOURS, noise_at
+from .remarks import remark_on_ends
 from .sample import Sample
 
 _FARTHEST = 0.01
@@ -42,7 +43,8 @@ def measure_distance(sample: Sample, ends: Points) -> Measurement:
         degrees=float(NEIGHBOURS - 3),
     )
     details = {"from_m": points[0].tolist(), "to_m": points[1].tolist()}
-    return Measurement("distance", (quantity,), details)
+    remarks = remark_on_ends(ends, points, quantity.half_width)
+    return Measurement("distance", (quantity,), details, remarks)
 
 
 def _nearest(sample: Sample, end: Vector) -> int:

@@ -15,6 +15,7 @@ from ..types.measurement import Measurement
 from ..types.plane import Plane, span_plane
 from ..types.quantity import Quantity
 from ..types.sphere import Sphere
+from .remarks import remark_on_fit
 from .sample import Sample
 from .trust import FitUncertainty, LinearMap, trust_fit
 
@@ -38,7 +39,7 @@ def measure_plane(sample: Sample) -> Measurement:
     how[0] = [*(-(sides @ fit.middle)), 1.0]
     values = dict(zip("xyz", plane.normal.tolist(), strict=True))
     named = {"distance": plane.distance} | {f"normal_{axis}": n for axis, n in values.items()}
-    return _tell("plane", fit, trust, named, ("m", "", "", ""), how)
+    return _tell("plane", fit, trust, sample, named, ("m", "", "", ""), how)
 
 
 def trust_plane(sample: Sample) -> tuple[ShapeFit[Plane], FitUncertainty]:
@@ -74,7 +75,7 @@ def measure_sphere(sample: Sample) -> Measurement:
     how = np.zeros((5, fit.slopes.shape[1]))
     how[0, 3], how[1, 3] = 1, 2
     how[2:, :3] = np.eye(3)
-    return _tell("sphere", fit, trust, values, ("m",) * 5, how)
+    return _tell("sphere", fit, trust, sample, values, ("m",) * 5, how)
 
 
 def trust_sphere(sample: Sample) -> tuple[ShapeFit[Sphere], FitUncertainty]:
@@ -116,7 +117,7 @@ def measure_cylinder(sample: Sample) -> Measurement:
     how[2:5] -= np.outer(cylinder.axis / cylinder.axis[most], how[2 + most])
     how[2 + most] = 0.0
     units = ("m",) * 5 + ("",) * 3
-    return _tell("cylinder", fit, trust_fit(fit, sample), values, units, how)
+    return _tell("cylinder", fit, trust_fit(fit, sample), sample, values, units, how)
 
 
 def _require_profiles(sample: Sample, what: str) -> None:
@@ -134,6 +135,7 @@ def _tell(
     kind: str,
     fit: ShapeFit[AnyShape],
     trust: FitUncertainty,
+    sample: Sample,
     values: dict[str, float],
     units: Sequence[str],
     how: LinearMap,
@@ -146,4 +148,5 @@ def _tell(
         "inliers": int(fit.inliers.sum()),
         "independent_patches": round(trust.degrees + fit.slopes.shape[1]),
     }
-    return Measurement(kind, (*trust.as_quantities(values, units, how), rms), details)
+    quantities = (*trust.as_quantities(values, units, how), rms)
+    return Measurement(kind, quantities, details, remark_on_fit(kind, fit, sample))

@@ -12,6 +12,7 @@ from ..types.measurement import Measurement
 from ..types.plane import Plane, span_plane
 from ..types.quantity import Quantity
 from .fits import trust_plane
+from .remarks import remark_on_fit
 from .sample import Sample
 from .trust import FitUncertainty
 
@@ -54,7 +55,9 @@ def measure_step(first: Sample, second: Sample) -> Measurement:
         "step", float(solution[1]), "m", math.sqrt(trust.matrix[1, 1]), common, trust.degrees
     )
     details = {"points": len(points), "normal": normal.tolist(), "degrees": trust.degrees}
-    return Measurement("step", (step, _angle(parts)), details)
+    samples = zip(parts, (first, second), strict=True)
+    remarks = [text for (fit, _), s in samples for text in remark_on_fit("plane", fit, s)]
+    return Measurement("step", (step, _angle(parts)), details, tuple(dict.fromkeys(remarks)))
 
 
 def _both_planes(points: Points, normal: Vector, is_second: Scalars) -> tuple[Scalars, np.ndarray]:

@@ -18,6 +18,7 @@ from ..measure import (
     draw_histogram,
     find_dents,
     measure_departure,
+    remark_on_smooth,
     require_dent_sizes,
     sigma_of_points,
 )
@@ -138,6 +139,8 @@ def search_dents(
                 sample, reference.mesh, within=largest, sigma=reference.sigma_along
             )
         search = find_dents(sample, deviation, smallest=smallest, least_depth=least_depth)
+        if reference is None:
+            search = replace(search, remarks=remark_on_smooth(sample, deviation, largest))
 
         def write(files: StageFiles) -> dict[str, object]:
             _save_points(files, sample, deviation)
@@ -156,7 +159,7 @@ def _as_measurement(search: DentSearch, reference: Reference | None) -> Measurem
     if reference is not None:
         details |= _how_aligned(reference)
     threshold = Quantity("threshold", search.threshold, "m", search.noise, 0.0)
-    return Measurement("dents", (threshold,), details)
+    return Measurement("dents", (threshold,), details, search.remarks)
 
 
 def _save_points(files: StageFiles, sample: Sample, deviation: Deviation) -> int:

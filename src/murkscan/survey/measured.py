@@ -93,6 +93,7 @@ def keep_measurement(
             "inputs": {"cloud": cloud},
             "quantities": {_key(one): as_plain(one) for one in measured.quantities},
             "details": details,
+            "remarks": list(measured.remarks),
         }
         with files.making(f"{name}.json") as path:
             save_json(path, content)

@@ -18,6 +18,8 @@ class Measurement(ShortRepr):
     details: Mapping[str, object] = field(default_factory=dict)
     """What else belongs to it: places and directions in the world [m], counts; plain values whose
     keys carry their unit."""
+    remarks: tuple[str, ...] = ()
+    """Why a number means less than its interval says, and what to do; sentences for the user."""
 
     def __getitem__(self, name: str) -> Quantity:
         """Give a quantity by its name.
