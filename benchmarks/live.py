@@ -14,6 +14,7 @@ import av
 import numpy as np
 from harness import Figure, tell
 
+from murkscan.capture.field_order import Fields
 from murkscan.distribute import Processes
 from murkscan.extract import AbstractExtractor, GrayGravity, Murk
 from murkscan.io.rig_toml import load_rig
@@ -34,6 +35,8 @@ PICTURES = 50
 """Pictures that are simulated; a stream shows them forwards and backwards, over and over."""
 COMPARED = 250
 """The same of the dive whose maps are compared."""
+SLOWER = 5
+"""How many times as slowly that one is replayed, so that maps are compared and not machines."""
 SPEED = 0.125
 """Of the camera in the scenes [m/s]."""
 SPACING = 5e-3
@@ -96,7 +99,8 @@ def main() -> None:
         "arrival of a frame's data to its profile that 95 % of the frames keep; the frames that "
         "are looked ahead for are in it. Resident grows from a third of the stream to its end.\n\n"
         "Gaps are compared in cells of 5 mm over what the preview has seen of a dive whose "
-        "laser goes out for 0.4 s every 2 s, with a camera of 360 × 288 px: the share of the cells "
+        "laser goes out for 50 mm of every 250 mm, with a camera of 360 × 288 px, replayed five "
+        "times as slowly so that maps are compared and not machines: the share of the cells "
         "that are gaps in either map, the preview's or the scan's, that are in both."
     )
     tell("live", "Live: how far behind, and how true", figures, note=note)
@@ -125,9 +129,9 @@ def _as_1080(scene: Scene) -> Scene:
     return replace(scene, rig=replace(scene.rig, camera=camera))
 
 
-def _encode(path: Path, pictures: Sequence[np.ndarray]) -> None:
+def _encode(path: Path, pictures: Sequence[np.ndarray], *, rate: int = 25) -> None:
     with av.open(str(path), "w") as container:
-        stream = container.add_stream("libx264", rate=25)
+        stream = container.add_stream("libx264", rate=rate)
         stream.height, stream.width = pictures[0].shape
         stream.pix_fmt = "yuv420p"
         options = {"g": "25", "tune": "zerolatency", "preset": "ultrafast", "crf": "18"}
@@ -135,7 +139,7 @@ def _encode(path: Path, pictures: Sequence[np.ndarray]) -> None:
         stream.codec_context.options = options | {"x264-params": "repeat-headers=1:annexb=1"}
         for number, picture in enumerate(pictures):
             frame = av.VideoFrame.from_ndarray(picture, "gray").reformat(format="yuv420p")
-            frame.pts, frame.time_base = number, Fraction(1, 25)
+            frame.pts, frame.time_base = number, Fraction(1, rate)
             container.mux(stream.encode(frame))
         container.mux(stream.encode(None))
 
@@ -159,15 +163,17 @@ def _send(path: str, port: int) -> None:
                     time.sleep(max(0.0, began + number / 25 - time.monotonic()))
 
 
-def _settings(extractor: AbstractExtractor, fields: str, move: object = None) -> LiveSettings:
-    motion = ConstantSpeed(SPEED, "y")
+def _settings(
+    extractor: AbstractExtractor, fields: Fields, *, speed: float = SPEED, is_scanned: bool = False
+) -> LiveSettings:
+    motion = ConstantSpeed(speed, "y")
 
     def stop(began: float) -> ConstantSpeed:
         raise _Over
 
     return LiveSettings(
         lambda began: SteadyFollower(motion),
-        (lambda began: motion) if move else stop,
+        (lambda began: motion) if is_scanned else stop,
         extractor,
         RaySheet(),
         spacing=SPACING,
@@ -190,7 +196,7 @@ def _stream(case: Case, made: Path, out: Path, seconds: float) -> list[Figure]:
             resident.append(_resident())
         return bool(seen) and told[-1].recorded.time >= seen[0].recorded.time + seconds
 
-    fields = "top-first" if rig.camera.size[0] == 720 else "progressive"
+    fields: Fields = "top-first" if rig.camera.size[0] == 720 else "progressive"
     context = multiprocessing.get_context("spawn")
     sender = context.Process(target=_send, args=(str(made / "stream.mkv"), case.port), daemon=True)
     sender.start()
@@ -242,9 +248,9 @@ def _compare(out: Path) -> list[Figure]:
         pictures = [f.to_ndarray(format="gray") for f in source.decode(video=0)]
     dark = np.full_like(pictures[0], int(np.median(pictures[0])))
     shown = [dark if number % 50 >= 40 else one for number, one in enumerate(pictures)]
-    _encode(out / "dive.mkv", shown)
+    _encode(out / "dive.mkv", shown, rate=25 // SLOWER)
     rig = load_rig(out / "rig.toml")
-    settings = _settings(Murk(), "top-first", move=True)
+    settings = _settings(Murk(), "top-first", speed=SPEED / SLOWER, is_scanned=True)
     project = run_live(str(out / "dive.mkv"), rig, settings, out=out / "scan")
     live = LiveFolder(out / "scan" / "live")
     gaps, status = live.load_gaps(), live.load_status()

@@ -7,11 +7,15 @@ import pytest
 
 from murkscan.errors import FormatError
 from murkscan.io.growing_table import GrowingTable
-from murkscan.io.pose_reading import PoseConvention
+from murkscan.io.pose_reading import PoseConvention, read_poses
 from murkscan.motion import ConstantSpeed, ConstantStep, PoseLog
 from murkscan.motion.following import LogFollower, SteadyFollower, is_clock
+from murkscan.motion.following_navigation import NavigationFollower
+from murkscan.motion.navigated import follow_navigation
 from murkscan.types.pose import Pose
 from murkscan.types.trajectory import Trajectory
+
+from ..streams import stream_rig
 
 HEAD = "time_s,x_m,y_m,z_m,qw,qx,qy,qz\n"
 MOUNT = Pose(np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]]), np.array([0.1, 0.0, 0.2]))
@@ -83,13 +87,61 @@ def test_a_hole_in_the_log_is_not_bridged_and_the_future_is_not_known(tmp_path):
 def test_a_clock_is_told_from_a_recordings_time(tmp_path):
     file = tmp_path / "poses.csv"
     table = GrowingTable(file, "pose log")
+
+    def begin(rows):
+        return read_poses(file, rows, PoseConvention()).log.times[0]
+
     with pytest.raises(FormatError, match=r"poses\.csv cannot be read"):
-        is_clock(table, PoseConvention())
+        is_clock(table, begin)
     file.write_text(HEAD)
-    with pytest.raises(FormatError, match="holds no pose yet"):
-        is_clock(table, PoseConvention())
+    with pytest.raises(FormatError, match="holds nothing yet"):
+        is_clock(table, begin)
     file.write_text(HEAD + line(0.0))
-    assert not is_clock(table, PoseConvention())
+    assert not is_clock(table, begin)
     file.write_text(HEAD + "1.7e9,0,0,0,1,0,0,0\n")
-    assert is_clock(table, PoseConvention())
+    assert is_clock(table, begin)
     assert table.read_new().rows  # nothing is lost by having looked
+
+
+def measured(time):
+    roll, pitch, heading = 2 * math.sin(time), 3 * math.cos(time), 10 + 2 * time
+    depth = 4 + 0.1 * math.sin(time / 2)
+    return [time, roll, pitch, heading, depth, 0.3 + 0.05 * math.sin(time), 0.02, 0.0]
+
+
+@pytest.mark.parametrize(("speed", "columns"), [(0.1, 4), (None, 8), (0.1, 5), (None, None)])
+def test_a_log_of_measurements_is_followed_as_the_whole_log_will_be(tmp_path, speed, columns):
+    """Attitude with a speed, with measured velocities and depth, with depth; and places."""
+    names = [
+        "time_s",
+        "roll_deg",
+        "pitch_deg",
+        "heading_deg",
+        "depth_m",
+        "vx_m_s",
+        "vy_m_s",
+        "vz_m_s",
+    ]
+    if columns is None:
+        names, columns = [*names[:5], "north_m", "east_m"], 7
+    file, rig = tmp_path / "navigation.csv", stream_rig()
+    file.write_text(",".join(names[:columns]) + "\n")
+    settings = {"speed": speed, "along": "x", "crs": None, "gap": 0.5, "start_time": 0.0}
+    follower = NavigationFollower(GrowingTable(file, "log"), rig, **settings)
+    found = []
+    for second in range(40):
+        with file.open("a") as log:
+            for k in range(10):
+                numbers = measured(second + k / 10)[:columns]
+                log.write(",".join(repr(float(number)) for number in numbers) + "\n")
+        follower.refresh()
+        found.append(follower.follow(np.arange(8) / 10 + second, np.zeros(8)))
+    times = np.concatenate([one.times for one in found])
+    motion, _ = follow_navigation(file, rig, speed=speed, along="x")
+    whole = motion.follow(times, np.zeros(len(times)))
+    places = np.concatenate([one.positions for one in found])
+    # A depth is smoothed over 0.3 s, of which a log that grows has one side only.
+    tolerance = [1e-9, 1e-9, 0.02 if "depth_m" in names[:columns] else 1e-9]
+    assert np.all(np.abs(places - whole.positions) < tolerance)
+    turns = np.concatenate([one.quaternions for one in found])
+    np.testing.assert_allclose(turns, whole.quaternions, atol=1e-9)

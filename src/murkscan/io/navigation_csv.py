@@ -31,7 +31,16 @@ def read_navigation_csv(path: Path) -> tuple[Series, ...]:
     Raises:
         FormatError: It has no time_s, or no column of measurements that is known.
     """
-    table = read_text_table(path, "log of navigation")
+    return read_measurements(path, read_text_table(path, "log of navigation"))
+
+
+def read_measurements(path: Path, table: TextTable) -> tuple[Series, ...]:
+    """Read a table of measurements; see `read_navigation_csv`.
+
+    Args:
+        path: The file that it is of, for messages.
+        table: Its lines, or some of them.
+    """
     names = [name.strip().lower() for name in table.names]
     if "time_s" not in names:
         raise FormatError(f"{path} lacks the column time_s; its first line must name its columns.")

@@ -69,6 +69,28 @@ def read_navigation_log(
         MissingDependency: What reads it is not installed.
     """
     series = _read(path)
+    return understand_series(path, series, crs=crs, salinity=salinity, gap=gap, accuracy=accuracy)
+
+
+def understand_series(
+    path: Path,
+    series: Sequence[Series],
+    *,
+    crs: str | None,
+    salinity: float,
+    gap: float,
+    accuracy: NavigationAccuracy | None,
+) -> NavigationLog:
+    """Say what series of measurements tell of a vehicle's way; see `read_navigation_log`.
+
+    Args:
+        path: The file that they are of, for messages.
+        series: What it holds.
+        crs: As of `read_navigation_log`, like all that follow.
+        salinity: Of the water [PSU].
+        gap: Longest time between two positions that is bridged [s].
+        accuracy: How good the instruments are.
+    """
     chosen = _choose(series)
     if not chosen:
         raise FormatError(

@@ -2,6 +2,7 @@
 
 import abc
 import math
+from collections.abc import Callable
 from typing import final
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from ..errors import FormatError
 from ..io.growing_table import GrowingTable
 from ..io.pose_reading import PoseConvention, read_poses
+from ..io.text_table import TextTable
 from ..types.arrays import Scalars
 from ..types.pose import Pose
 from ..types.trajectory import Trajectory
@@ -112,14 +114,7 @@ class LogFollower(AbstractFollower):
         table = self._table.read_new()
         if table is None or not table.rows:
             return
-        new = read_poses(self._table.path, table, self._convention).log
-        if self._log is None:
-            self._log = new
-            return
-        later = new.times > self._log.times[-1]
-        recent = self._log.times > self._log.times[-1] - _KEPT
-        parts = [_pick(self._log, recent), _pick(new, later)]
-        self._log = Trajectory.concatenate([part for part in parts if part is not None])
+        self._log = go_on(self._log, read_poses(self._table.path, table, self._convention).log)
 
     @property
     def known_until(self) -> float:
@@ -128,16 +123,41 @@ class LogFollower(AbstractFollower):
 
     def follow(self, times: Scalars, pictures: Scalars) -> Trajectory | None:
         """See `AbstractFollower.follow`."""
-        if self._log is None or len(self._log.times) < 2:
-            return None
-        log, moments = self._log, times + self._start
-        after = np.clip(np.searchsorted(log.times, moments), 1, len(log.times) - 1)
-        covered = (moments >= log.times[0]) & (moments <= log.times[-1])
-        covered &= log.times[after] - log.times[after - 1] <= self._gap
-        if not covered.any():
-            return None
-        poses = log.at(moments[covered]).follow_mount(self._mount)
-        return Trajectory(times[covered], poses.positions, poses.quaternions)
+        return sample_log(self._log, times, self._mount, start=self._start, gap=self._gap)
+
+
+def sample_log(
+    log: Trajectory | None, times: Scalars, mount: Pose, *, start: float, gap: float
+) -> Trajectory | None:
+    """Sample a log at those recording times that it covers; None where it covers none.
+
+    Args:
+        log: world_from_vehicle by its own clock; None while there is nothing of it.
+        times: Recording times [s], strictly increasing.
+        mount: vehicle_from_camera.
+        start: Log time at which recording time is 0 [s].
+        gap: Longest time between two poses that is bridged [s].
+    """
+    if log is None or len(log.times) < 2:
+        return None
+    moments = times + start
+    after = np.clip(np.searchsorted(log.times, moments), 1, len(log.times) - 1)
+    covered = (moments >= log.times[0]) & (moments <= log.times[-1])
+    covered &= log.times[after] - log.times[after - 1] <= gap
+    if not covered.any():
+        return None
+    poses = log.at(moments[covered]).follow_mount(mount)
+    return Trajectory(times[covered], poses.positions, poses.quaternions)
+
+
+def go_on(log: Trajectory | None, new: Trajectory) -> Trajectory:
+    """Put what is new of a log after what was there, of which the last minute is kept."""
+    if log is None:
+        return new
+    later = new.times > log.times[-1]
+    recent = log.times > log.times[-1] - _KEPT
+    parts = [_pick(log, recent), _pick(new, later)]
+    return Trajectory.concatenate([part for part in parts if part is not None])
 
 
 def _pick(log: Trajectory, which: np.ndarray) -> Trajectory | None:
@@ -146,17 +166,21 @@ def _pick(log: Trajectory, which: np.ndarray) -> Trajectory | None:
     return Trajectory(log.times[which], log.positions[which], log.quaternions[which])
 
 
-def is_clock(table: GrowingTable, convention: PoseConvention) -> bool:
+def is_clock(table: GrowingTable, begin_of: Callable[[TextTable], float]) -> bool:
     """Tell whether a log's times are those of a clock: seconds since 1970, not since its begin.
 
+    Args:
+        table: The file.
+        begin_of: Gives the first time of its lines [s].
+
     Raises:
-        FormatError: It holds no pose yet, so that nobody can tell.
+        FormatError: It holds nothing yet, so that nobody can tell.
     """
     rows = table.read_new()
     if rows is None or not rows.rows:
         raise FormatError(
-            f"{table.path} holds no pose yet; start what writes it first, or say with --start-time "
+            f"{table.path} holds nothing yet; start what writes it first, or say with --start-time "
             "when the recording begins by its clock."
         )
     table.rewind()
-    return float(read_poses(table.path, rows, convention).log.times[0]) > _SINCE_1970
+    return bool(begin_of(rows) > _SINCE_1970)

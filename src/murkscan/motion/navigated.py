@@ -70,7 +70,7 @@ def follow_navigation(
             "the rig has no [mount]: its camera's x, y, z are taken for the vehicle's forward, "
             "starboard, down"
         )
-    way = _find_way(path, log, mount or Pose.identity(), speed, along, said)
+    way = find_way(path, log, mount or Pose.identity(), speed, along, said)
     turn = (mount or Pose.identity()).rotation
     ahead = None if speed is None else speed * (turn @ np.eye(3)["xyz".index(along)])
     motion = PoseLog(
@@ -113,7 +113,7 @@ def _measure(
     return measured if is_placed or is_led else None
 
 
-def _find_way(
+def find_way(
     path: Path,
     log: NavigationLog,
     mount: Pose,
@@ -121,6 +121,19 @@ def _find_way(
     along: Direction,
     said: list[str],
 ) -> Trajectory:
+    """Find a vehicle's way in its log: its poses, or its velocity added up from 0.
+
+    Args:
+        path: The file of the log, for messages.
+        log: What it tells.
+        mount: vehicle_from_camera.
+        speed: Speed of the camera along one of its axes [m/s]; None where the log tells.
+        along: The axis.
+        said: Is told how the log was taken, in sentences.
+
+    Raises:
+        InputError: It tells neither places nor velocity, and no speed is given.
+    """
     if speed is not None:
         if log.poses is not None or log.navigation.velocity is not None:
             said.append("places and velocities of the log are not used, since a speed is given")

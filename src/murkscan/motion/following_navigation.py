@@ -1,0 +1,110 @@
+"""Where a camera is whose vehicle's instruments are logged while it moves."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import final
+
+import numpy as np
+
+from ..io.growing_table import GrowingTable
+from ..io.navigation_csv import read_measurements
+from ..io.navigation_log import NavigationLog, understand_series
+from ..io.text_table import TextTable
+from ..types.arrays import Scalars
+from ..types.pose import Pose
+from ..types.rig import Rig
+from ..types.trajectory import Trajectory
+from ..types.water import Water
+from .base import Direction
+from .following import AbstractFollower, go_on, sample_log
+from .navigated import find_way
+
+_ROWS = 2000
+"""Lines that are looked at together, at most."""
+_EARLIER = 500
+"""Earlier lines that are among them: the way goes on from there, and a depth is smoothed over some
+seconds."""
+
+
+@final
+class NavigationFollower(AbstractFollower):
+    """A log of measurements that another program writes on: CSV, as of `--navigation`."""
+
+    def __init__(
+        self,
+        table: GrowingTable,
+        rig: Rig,
+        *,
+        speed: float | None,
+        along: Direction,
+        crs: str | None,
+        start_time: float,
+        gap: float,
+    ) -> None:
+        """Follow a log; arguments as of `follow_navigation`, and its growing file."""
+        self._table, self._rig, self._speed, self._along = table, rig, speed, along
+        self._crs, self._start, self._gap = crs, start_time, gap
+        self._mount = rig.vehicle_from_camera or Pose.identity()
+        self._earlier: TextTable | None = None
+        self._log: Trajectory | None = None
+
+    def refresh(self) -> None:
+        """See `AbstractFollower.refresh`.
+
+        Raises:
+            InputError: The log tells neither places nor velocity, and no speed is given.
+        """
+        table = self._table.read_new()
+        if table is None or not table.rows:
+            return
+        for first in range(0, len(table.rows), _ROWS):
+            some = slice(first, first + _ROWS)
+            part = TextTable(table.names, table.rows[some], table.lines[some])
+            whole = part if self._earlier is None else _join(self._earlier, part)
+            self._earlier = _last(whole)
+            self._add(whole)
+
+    @property
+    def known_until(self) -> float:
+        """See `AbstractFollower.known_until`."""
+        return -math.inf if self._log is None else float(self._log.times[-1]) - self._start
+
+    def follow(self, times: Scalars, pictures: Scalars) -> Trajectory | None:
+        """See `AbstractFollower.follow`."""
+        return sample_log(self._log, times, self._mount, start=self._start, gap=self._gap)
+
+    def _add(self, table: TextTable) -> None:
+        path = self._table.path
+        log = understand_series(
+            path,
+            read_measurements(path, table),
+            crs=self._crs,
+            salinity=(self._rig.water or Water()).salinity_psu,
+            gap=self._gap,
+            accuracy=self._rig.navigation,
+        )
+        if log.poses is None and log.navigation.attitude is None and self._log is None:
+            return  # the first lines may hold one instrument only
+        way = find_way(path, log, self._mount, self._speed, self._along, [])
+        self._log = go_on(self._log, way if way is log.poses else self._lay_on(way, log))
+
+    def _lay_on(self, way: Trajectory, log: NavigationLog) -> Trajectory:
+        """Let a way that was added up from 0 go on where the one before is."""
+        before = self._log
+        if before is None or not way.times[0] <= before.times[-1] <= way.times[-1]:
+            return way
+        at = before.times[-1:]
+        shift = before.positions[-1] - way.at(at).positions[0]
+        if log.navigation.depth is not None:
+            shift = shift * np.array([1.0, 1.0, 0.0])
+        return replace(way, positions=way.positions + shift)
+
+
+def _join(earlier: TextTable, later: TextTable) -> TextTable:
+    rows: Sequence[tuple[str, ...]] = [*earlier.rows, *later.rows]
+    return TextTable(later.names, rows, [*earlier.lines, *later.lines])
+
+
+def _last(table: TextTable) -> TextTable:
+    return TextTable(table.names, table.rows[-_EARLIER:], table.lines[-_EARLIER:])
