@@ -98,7 +98,7 @@ def main() -> None:
         "share of a core that it needs tells more than the delay. Behind is the time from the "
         "arrival of a frame's data to its profile that 95 % of the frames keep; the frames that "
         "are looked ahead for are in it. Resident grows from a third of the stream to its end.\n\n"
-        "Gaps are compared in cells of 5 mm over what the preview has seen of a dive whose "
+        "Gaps are compared in cells of 5 mm, from where the preview begins, of a dive whose "
         "laser goes out for 50 mm of every 250 mm, with a camera of 360 × 288 px, replayed five "
         "times as slowly so that maps are compared and not machines: the share of the cells "
         "that are gaps in either map, the preview's or the scan's, that are in both."
@@ -303,7 +303,8 @@ def _agreement(gaps: GapMap, project: Project, rig: Rig) -> float:
     inside = (rows >= 0) & (columns >= 0)
     inside &= (rows < whole.points.shape[0]) & (columns < whole.points.shape[1])
     state[inside] = whole.state()[rows[inside], columns[inside]]
-    seen = (gaps.state != NOTHING).any(axis=0)  # columns that the preview has passed
+    # What lies before the first cell of a row that the preview knows was passed while it learnt.
+    seen = np.maximum.accumulate(gaps.state != NOTHING, axis=1)
     in_preview = (gaps.state != NOTHING) & (gaps.state > 0) & seen
     in_scan = (state > 0) & (state <= len(CAUSES)) & seen
     either = int((in_preview | in_scan).sum())
