@@ -46,13 +46,11 @@ def print_remarks(remarks: Sequence[str], water: "Attenuation | None" = None) ->
 def _tell_water(water: "Attenuation") -> str:
     from ..plan import visibility_from_attenuation
 
-    glow = f"the laser's glow in it fades by {water.effective:.2g} per metre"
-    if not water.is_telling:
-        return f"{glow}, and scatters too much to tell the beam attenuation"
     near, far = map(visibility_from_attenuation, (water.high, water.low))
     return (
-        f"{glow}, so its beam attenuation lies between {water.low:.2g} and {water.high:.2g} per "
-        f"metre: a diver sees {near:.1f} to {far:.1f} m"
+        f"the laser's glow in it fades by {water.effective:.2g} per metre, so its beam attenuation "
+        f"lies between {water.low:.2g} and {water.high:.2g} per metre: a diver sees {near:.1f} to "
+        f"{far:.1f} m"
     )
 
 

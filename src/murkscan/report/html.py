@@ -112,7 +112,7 @@ def _headline(summary: ScanSummary) -> list[Block]:
     if summary.coverage is not None:
         share = summary.coverage.covered / summary.coverage.mapped
         facts.append((f"{100 * share:.1f} %", "of the surface between the profiles covered"))
-    if (water := summary.recorded.attenuation) is not None and water.is_telling:
+    if (water := summary.recorded.attenuation) is not None:
         between = f"between {water.low:.2g} and {water.high:.2g}"
         told = f"per metre: attenuation of the water, by its glow, {between}"
         facts.append((f"{water.effective:.2g}", told))

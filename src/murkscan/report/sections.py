@@ -219,10 +219,8 @@ def _murk(recorded: Recorded) -> str:
     water = recorded.attenuation
     if water is None:
         return "not told by the glow"
-    fades = f"the glow fades by {water.effective:.2g} per metre"
-    if not water.is_telling:
-        return f"{fades}; the water scatters too much to tell its beam attenuation"
-    return f"{fades}; beam attenuation between {water.low:.2g} and {water.high:.2g} per metre"
+    between = f"beam attenuation between {water.low:.2g} and {water.high:.2g} per metre"
+    return f"the glow fades by {water.effective:.2g} per metre; {between}"
 
 
 def _spread(value: float | None, unit: str) -> str:

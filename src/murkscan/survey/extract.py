@@ -217,7 +217,7 @@ def _count(job: _Job) -> ExtractResult:
     points = [number for note in notes for number in note.points]
     points_of = tuple(map(sum, zip(*(note.points_of for note in notes), strict=True)))
     skips = tuple(skip for note in notes for skip in note.skips)
-    water = (one.attenuation for one in backgrounds.values() if one.attenuation)
+    water = (one.water for one in backgrounds.values() if one.water)
     return ExtractResult(
         lasers=tuple(backgrounds),
         frames=len(points),

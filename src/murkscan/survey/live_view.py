@@ -244,7 +244,7 @@ def _narrow(
 
 
 def _murk(background: Background | None) -> Attenuation | None:
-    return None if background is None else background.attenuation
+    return None if background is None else background.water
 
 
 def _as_gaps(coverage: Coverage) -> GapMap:

@@ -74,7 +74,7 @@ def _tell_murk(project: Project) -> str:
     found = None
     with suppress(MurkscanError):
         found = project.finished(EXTRACT).result.attenuation
-    if found is None or not found.is_telling:
+    if found is None:
         return "how murky, the recording does not tell"
     return f"beam attenuation between {found.low:.2g} and {found.high:.2g} per metre, by the glow"
 

@@ -150,3 +150,8 @@ class Background(ShortRepr):
     """How murky the water is, where the glow tells."""
     remarks: tuple[str, ...] = ()
     """What is odd about the recording, with its cure; sentences for the user."""
+
+    @property
+    def water(self) -> Attenuation | None:
+        """Give how murky the water is where that can be told: in clear or very murky water, not."""
+        return self.attenuation if self.attenuation and self.attenuation.is_telling else None
