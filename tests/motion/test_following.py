@@ -10,7 +10,7 @@ from murkscan.io.growing_table import GrowingTable
 from murkscan.io.pose_reading import PoseConvention, read_poses
 from murkscan.motion import ConstantSpeed, ConstantStep, PoseLog
 from murkscan.motion.following import LogFollower, SteadyFollower, is_clock
-from murkscan.motion.following_navigation import NavigationFollower
+from murkscan.motion.following_navigation import NavigationFollower, TableReadings
 from murkscan.motion.navigated import follow_navigation
 from murkscan.types.pose import Pose
 from murkscan.types.trajectory import Trajectory
@@ -127,7 +127,7 @@ def test_a_log_of_measurements_is_followed_as_the_whole_log_will_be(tmp_path, sp
     file, rig = tmp_path / "navigation.csv", stream_rig()
     file.write_text(",".join(names[:columns]) + "\n")
     settings = {"speed": speed, "along": "x", "crs": None, "gap": 0.5, "start_time": 0.0}
-    follower = NavigationFollower(GrowingTable(file, "log"), rig, **settings)
+    follower = NavigationFollower(TableReadings(file), rig, **settings)
     found = []
     for second in range(40):
         with file.open("a") as log:

@@ -1,5 +1,6 @@
 """murkscan live: record a dive, show it while it goes on, and scan it when it is over."""
 
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -8,7 +9,7 @@ from cyclopts.types import PositiveFloat
 
 from ..ui.choices import ExtractorName, check_settings, make_extractor, make_method
 from .live_display import LiveDisplay
-from .live_motion import make_follower, make_mover
+from .live_motion import follow_mavlink, make_follower, make_mover, open_link
 from .options import ExecutorFlags, Lasers, MotionFlags, Settings
 from .paths import RigFile
 from .progress import progress_bars
@@ -29,6 +30,7 @@ def live(
     out: Path,
     motion: MotionFlags = MotionFlags(),
     work: ExecutorFlags = ExecutorFlags(),
+    mavlink: str | None = None,
     spacing_mm: PositiveFloat = 5.0,
     extractor: ExtractorName = "murk",
     settings: Settings = (),
@@ -53,6 +55,9 @@ def live(
         The rig file of the camera and laser.
     out
         Folder for everything that is made.
+    mavlink
+        Where to listen to the vehicle: HOST:PORT of this machine, such as 0.0.0.0:14550. What it
+        sends is written to OUT/capture/navigation.tlog; --speed-mm-s may stand beside it.
     spacing_mm
         Wanted distance of neighbouring points [mm]: gaps and speed are judged by it.
     extractor
@@ -72,6 +77,7 @@ def live(
         How long a stream that was lost is waited for before the dive counts as over [s].
     """
     check_settings(settings)
+    motion = follow_mavlink(motion, mavlink, out)
     motion.check()
     with progress_bars():
         from ..io.rig_toml import load_rig
@@ -82,8 +88,9 @@ def live(
         from .summary import print_summary
 
         of_dive = load_rig(rig)
+        link = None if mavlink is None else open_link(mavlink, motion)
         chosen = LiveSettings(
-            make_follower(motion, of_dive, min(laser, default=0)),
+            make_follower(motion, of_dive, min(laser, default=0), link),
             make_mover(motion, of_dive, min(laser, default=0)),
             make_extractor(extractor, settings),
             make_method("ray-sheet"),
@@ -93,6 +100,7 @@ def live(
             fields=fields,
             timeout=timeout,
             patience=patience,
+            beside=nullcontext if link is None else link.listening,
         )
     show = LiveDisplay(seconds)
     try:

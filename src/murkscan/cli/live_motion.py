@@ -2,38 +2,64 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..errors import InputError
 from ..ui.values import read_start_time
 from .options import MotionFlags
 
 if TYPE_CHECKING:
+    from ..io.dive.mavlink_link import MavlinkLink
     from ..io.pose_reading import PoseConvention
     from ..motion import AbstractMotion
     from ..motion.following import AbstractFollower
     from ..types.rig import Rig
 
 
+def follow_mavlink(flags: MotionFlags, address: str | None, out: Path) -> MotionFlags:
+    """Take what a vehicle sends for the log of a dive.
+
+    Raises:
+        InputError: Another log is given as well.
+    """
+    if address is None:
+        return flags
+    if flags.navigation is not None or flags.poses is not None:
+        raise InputError("--mavlink is a log itself; leave out --poses and --navigation.")
+    return replace(flags, navigation=out / "capture" / "navigation.tlog")
+
+
+def open_link(address: str, flags: MotionFlags) -> "MavlinkLink":
+    """Make what listens to a vehicle, and writes into the log of the dive."""
+    from ..io.dive.mavlink_link import MavlinkLink
+
+    assert flags.navigation is not None  # `follow_mavlink` says where
+    return MavlinkLink(address, flags.navigation)
+
+
 def make_follower(
-    flags: MotionFlags, rig: "Rig", laser: int
+    flags: MotionFlags, rig: "Rig", laser: int, link: "MavlinkLink | None"
 ) -> "Callable[[float], AbstractFollower]":
     """Make what follows the camera from the time at which its recording began.
 
-    Raises:
-        InputError: The flags describe no motion.
+    Args:
+        flags: How it moves; where a vehicle is listened to, `navigation` is what that writes.
+        rig: The rig.
+        laser: Number of the laser.
+        link: Listens to a vehicle.
     """
-    flags.check()
 
     def follow(began: float) -> "AbstractFollower":
         from ..io.growing_table import GrowingTable
         from ..motion import ConstantSpeed, ConstantStep
         from ..motion.following import LogFollower, SteadyFollower
-        from ..motion.following_navigation import NavigationFollower
+        from ..motion.following_navigation import NavigationFollower, TableReadings
         from ..types.pose import Pose
 
         if flags.navigation is not None:
             return NavigationFollower(
-                GrowingTable(flags.navigation, "log of navigation"),
+                link or TableReadings(flags.navigation),
                 rig,
                 speed=None if flags.speed_mm_s is None else flags.speed_mm_s / 1e3,
                 along=flags.along or rig.laser(laser).axis,
@@ -78,6 +104,8 @@ def _start(flags: MotionFlags, began: float) -> float:
     """Find the log's time at which the recording began; a log's clock is this machine's."""
     if flags.start_time != "0":
         return read_start_time(flags.start_time)
+    if flags.navigation is not None and flags.navigation.suffix == ".tlog":
+        return began  # its packets are stamped since 1970
     from ..io.growing_table import GrowingTable
     from ..io.navigation_csv import read_measurements
     from ..io.pose_reading import read_poses

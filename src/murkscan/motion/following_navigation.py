@@ -1,12 +1,14 @@
 """Where a camera is whose vehicle's instruments are logged while it moves."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import final
+from pathlib import Path
+from typing import Protocol, final, runtime_checkable
 
 import numpy as np
 
+from ..io.dive.series import Series
 from ..io.growing_table import GrowingTable
 from ..io.navigation_csv import read_measurements
 from ..io.navigation_log import NavigationLog, understand_series
@@ -27,13 +29,48 @@ _EARLIER = 500
 seconds."""
 
 
+@runtime_checkable
+class RecentReadings(Protocol):
+    """Where measurements come from while a vehicle moves."""
+
+    path: Path
+    """Where they are written down."""
+
+    def read_recent(self) -> Iterator[tuple[Series, ...]]:
+        """Give what is new, together with what was measured in the seconds before it."""
+        ...
+
+
+@final
+class TableReadings:
+    """A log of measurements that another program writes on: CSV, as of `--navigation`."""
+
+    def __init__(self, path: Path) -> None:
+        """Begin at the file's begin."""
+        self.path = path
+        self._table = GrowingTable(path, "log of navigation")
+        self._earlier: TextTable | None = None
+
+    def read_recent(self) -> Iterator[tuple[Series, ...]]:
+        """See `RecentReadings.read_recent`."""
+        table = self._table.read_new()
+        if table is None:
+            return
+        for first in range(0, len(table.rows), _ROWS):
+            some = slice(first, first + _ROWS)
+            part = TextTable(table.names, table.rows[some], table.lines[some])
+            whole = part if self._earlier is None else _join(self._earlier, part)
+            self._earlier = _last(whole)
+            yield read_measurements(self.path, whole)
+
+
 @final
 class NavigationFollower(AbstractFollower):
-    """A log of measurements that another program writes on: CSV, as of `--navigation`."""
+    """A vehicle whose instruments are read while it moves."""
 
     def __init__(
         self,
-        table: GrowingTable,
+        readings: RecentReadings,
         rig: Rig,
         *,
         speed: float | None,
@@ -42,11 +79,10 @@ class NavigationFollower(AbstractFollower):
         start_time: float,
         gap: float,
     ) -> None:
-        """Follow a log; arguments as of `follow_navigation`, and its growing file."""
-        self._table, self._rig, self._speed, self._along = table, rig, speed, along
+        """Follow readings; the other arguments as of `follow_navigation`."""
+        self._readings, self._rig, self._speed, self._along = readings, rig, speed, along
         self._crs, self._start, self._gap = crs, start_time, gap
         self._mount = rig.vehicle_from_camera or Pose.identity()
-        self._earlier: TextTable | None = None
         self._log: Trajectory | None = None
 
     def refresh(self) -> None:
@@ -55,15 +91,8 @@ class NavigationFollower(AbstractFollower):
         Raises:
             InputError: The log tells neither places nor velocity, and no speed is given.
         """
-        table = self._table.read_new()
-        if table is None or not table.rows:
-            return
-        for first in range(0, len(table.rows), _ROWS):
-            some = slice(first, first + _ROWS)
-            part = TextTable(table.names, table.rows[some], table.lines[some])
-            whole = part if self._earlier is None else _join(self._earlier, part)
-            self._earlier = _last(whole)
-            self._add(whole)
+        for series in self._readings.read_recent():
+            self._add(series)
 
     @property
     def known_until(self) -> float:
@@ -74,11 +103,11 @@ class NavigationFollower(AbstractFollower):
         """See `AbstractFollower.follow`."""
         return sample_log(self._log, times, self._mount, start=self._start, gap=self._gap)
 
-    def _add(self, table: TextTable) -> None:
-        path = self._table.path
+    def _add(self, series: tuple[Series, ...]) -> None:
+        path = self._readings.path
         log = understand_series(
             path,
-            read_measurements(path, table),
+            series,
             crs=self._crs,
             salinity=(self._rig.water or Water()).salinity_psu,
             gap=self._gap,

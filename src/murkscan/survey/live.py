@@ -78,7 +78,8 @@ def run_live(
         if record is None:
             show.clear()
         if record is None or not record.ended:
-            _dive(source, recording, rig, settings, dive, show, tell, until)
+            with settings.beside():
+                _dive(source, recording, rig, settings, dive, show, tell, until)
         return _scan(
             source, recording, rig, settings, project, dive, show,
             rig_file=rig_file, executor=executor, progress=progress,

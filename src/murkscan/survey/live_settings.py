@@ -1,6 +1,7 @@
 """How a dive is recorded, shown and scanned."""
 
 from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
 
 from ..capture.field_order import Fields
@@ -33,6 +34,8 @@ class LiveSettings:
     """Longest wait for the stream and for its next picture [s]."""
     patience: float = 60.0
     """How long a lost stream is waited for [s]."""
+    beside: Callable[[], AbstractContextManager[None]] = nullcontext
+    """Makes what is done while the dive goes on, such as the writing of the vehicle's log."""
     learner: AbstractExecutor = field(default_factory=lambda: Processes(1))
     """Who learns while the dive goes on."""
 
