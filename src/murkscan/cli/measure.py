@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 What = Literal[
     "distance", "section", "area", "volume", "plane", "sphere", "cylinder", "step", "deviation",
-    "dents",
+    "dents", "wall",
 ]  # fmt: skip
 
 app = App(
@@ -40,6 +40,7 @@ for _file, _name, _help, _place in (
     ("extent", "area", "Measure the area of the surface, as far as it was scanned.", 6),
     ("extent", "volume", "Measure the volume between the surface and a plane, or inside it.", 7),
     ("deviation", "deviation", "Compare the scan with a drawing's mesh or an earlier scan.", 8),
+    ("wall", "wall", "Draw a wall in elevation, with curves of how it bends.", 10),
     ("deviation", "dents", "Find dents and bumps, with place, depth and diameter.", 9),
 ):
     app.command(f"murkscan.cli.measure_{_file}:{_name}", name=_name, help=_help, sort_key=_place)

@@ -5,14 +5,17 @@ that lie next to each other are off by nearly the same. Ten thousand points then
 the few hundred patches in which they agree, and the usual covariance is far too small.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from scipy.ndimage import convolve1d
 
 from ..types.arrays import Indices, Scalars
 from .shape import Slopes
+
+Group = Int[np.ndarray, "_"]
 
 _QUIET_LAGS = 4
 """Lags in a row without correlation after which there is none."""
@@ -157,10 +160,64 @@ def variance_of_sum(weights: Scalars, errors: Scalars, profile: Indices, line: I
     return float((filled * spread).sum() * np.mean(errors**2)) * _widen(cells, reach)
 
 
-def _find_reach(cells: _Cells, residuals: Scalars) -> tuple[int, int]:
-    values, there = cells.fill(residuals), cells.fill(np.ones_like(residuals))
+def variances_of_means(
+    groups: Sequence[Group],
+    errors: Scalars,
+    variances: Scalars,
+    profile: Indices,
+    line: Indices,
+) -> Float[np.ndarray, " groups"]:
+    """Give the variance of the mean error of each of many small groups of points.
+
+    How errors hang together along profiles and across them is told from all points, by their
+    correlation at each lag.
+
+    Args:
+        groups: Which points are in each group.
+        errors: How far each point is off from a smooth curve or surface [m].
+        variances: Of each point's error [m²].
+        profile: Number of each point's profile.
+        line: Number of each point's scan line.
+
+    References:
+        As for `covariance_of_fit`.
+    """
+    cells = _Cells.of(profile, line)
+    values, there = _mean_errors(cells, errors)
+    across, along = (
+        _correlations(grid, seen, min(len(grid), _MOST_LAGS))
+        for grid, seen in ((values, there), (values.T, there.T))
+    )
+    found = np.empty(len(groups))
+    for number, group in enumerate(groups):
+        shares = np.ones((len(group), len(group)))
+        for places, known in ((cells.profile[group], across), (cells.line[group], along)):
+            lags = np.abs(places[:, None] - places[None, :])
+            shares *= np.append(known, 0.0)[np.minimum(lags, len(known))]
+        least = _FLOOR / len(group)
+        found[number] = max(shares.mean(), least) * np.mean(variances[group])
+    return found
+
+
+def _mean_errors(cells: _Cells, errors: Scalars) -> tuple[np.ndarray, np.ndarray]:
+    """Give the mean error of each cell, 0 where there is none, and 1 where there is one."""
+    values, there = cells.fill(errors), cells.fill(np.ones_like(errors))
     values = np.divide(values, there, out=np.zeros_like(values), where=there > 0)
-    there = (there > 0).astype(float)
+    return values, (there > 0).astype(float)
+
+
+def _correlations(values: np.ndarray, there: np.ndarray, reach: int) -> Scalars:
+    """Give the correlation along the first axis at each lag below the reach; 1 at lag 0."""
+    variance = max(float((values**2).sum() / max(there.sum(), 1.0)), 1e-300)
+    found = [1.0]
+    for lag in range(1, reach):
+        pairs = max(float((there[lag:] * there[:-lag]).sum()), 1.0)
+        found.append(float((values[lag:] * values[:-lag]).sum()) / (pairs * variance))
+    return np.array(found)
+
+
+def _find_reach(cells: _Cells, residuals: Scalars) -> tuple[int, int]:
+    values, there = _mean_errors(cells, residuals)
     return _reach_along(values, there), _reach_along(values.T, there.T)
 
 

@@ -3,6 +3,8 @@
 from .ball import FoundBall as FoundBall
 from .ball import find_ball as find_ball
 from .ball import measure_spacing as measure_spacing
+from .deflection import Deflection as Deflection
+from .deflection import find_deflection as find_deflection
 from .dents import DentSearch as DentSearch
 from .dents import find_dents as find_dents
 from .departure import measure_departure as measure_departure
@@ -30,3 +32,8 @@ from .selection import Ball as Ball
 from .selection import Box as Box
 from .selection import Selection as Selection
 from .step import measure_step as measure_step
+from .wall_drawing import draw_wall as draw_wall
+from .wall_map import Anomaly as Anomaly
+from .wall_map import WallMap as WallMap
+from .wall_map import find_anomalies as find_anomalies
+from .wall_map import map_wall as map_wall

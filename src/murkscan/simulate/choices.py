@@ -8,7 +8,7 @@ from typing import Any, get_type_hints
 from pydantic import TypeAdapter, ValidationError
 
 from ..errors import InputError
-from .shapes import Chessboard, Cylinder, Hull, Plane, Sphere, Stairs
+from .shapes import Chessboard, Cylinder, Hull, Plane, SheetPile, Sphere, Stairs
 from .textures import Bands, Checkered, Growth, Plain
 
 SHAPES: dict[str, type] = {
@@ -16,6 +16,7 @@ SHAPES: dict[str, type] = {
     "cylinder": Cylinder,
     "hull": Hull,
     "plane": Plane,
+    "sheet_pile": SheetPile,
     "sphere": Sphere,
     "stairs": Stairs,
 }
@@ -28,7 +29,7 @@ TEXTURES: dict[str, type] = {
 }
 """Ways in which a surface may be painted."""
 _LENGTHS = {"width", "height", "widths", "heights", "radius", "length", "beam", "draft", "tread",
-            "square", "size"}  # fmt: skip
+            "square", "size", "rib", "depth", "bulge", "bulge_width"}  # fmt: skip
 """Fields that are lengths: their keys carry the unit."""
 _RENAMED = {"share": "albedo"}
 """Fields whose keys have the name that people look for."""

@@ -8,7 +8,7 @@ from jaxtyping import Float
 from scipy.spatial.transform import Rotation, Slerp
 
 from ..errors import InputError
-from .arrays import Mask, Points, Quaternions, Scalars, Vector
+from .arrays import Mask, Matrix3, Points, Quaternions, Scalars, Vector
 from .pose import Pose
 from .short_repr import ShortRepr
 
@@ -122,6 +122,10 @@ class Trajectory(ShortRepr):
         """Compute the mean direction in which the camera looked, in the world; unit length."""
         mean = Rotation.from_quat(self.quaternions, scalar_first=True).mean()
         return np.asarray(mean.apply(np.array([0.0, 0.0, 1.0])))
+
+    def mean_attitude(self) -> Matrix3:
+        """Compute the mean rotation from camera axes to world axes."""
+        return Rotation.from_quat(self.quaternions, scalar_first=True).mean().as_matrix()
 
     def follow_mount(self, source_from_camera: Pose) -> "Trajectory":
         """Give world_from_camera where this is world_from_source: a vehicle with a mount."""

@@ -5,5 +5,6 @@ from .chessboard import Chessboard as Chessboard
 from .cylinder import Cylinder as Cylinder
 from .hull import Hull as Hull
 from .plane import Plane as Plane
+from .sheet_pile import SheetPile as SheetPile
 from .sphere import Sphere as Sphere
 from .stairs import Stairs as Stairs

@@ -1,0 +1,76 @@
+"""murkscan measure wall, on the cloud of another program."""
+
+import csv
+import json
+
+import numpy as np
+import pytest
+
+from murkscan.cli.main import run
+from murkscan.simulate.shapes import SheetPile
+
+
+@pytest.fixture(scope="module")
+def wall(tmp_path_factory):
+    """Give a folder with the points of a wall of sheet piles that bulges by 30 mm."""
+    folder = tmp_path_factory.mktemp("wall")
+    x, y = (grid.ravel() for grid in np.mgrid[-0.6:0.6:0.01, -2:2:0.01])
+    shape = SheetPile(width=1.2, height=4.0, bulge=0.03, bulge_width=0.5)
+    points = np.stack([x, y, 0.6 + shape.depth_at(x, y)], axis=1)
+    normals = np.tile([0.0, 0.0, -1.0], (len(x), 1))
+    np.savetxt(folder / "wall.xyz", np.concatenate([points, normals], axis=1), "%.7f")
+    out = folder / "out"
+    assert run(["merge", str(folder / "wall.xyz"), "--out", str(out)]) == 0
+    return out
+
+
+def test_a_wall_is_drawn_tabled_and_mapped(wall, capsys):
+    plane = ("--point-m", "0,0,0.6", "--normal", "0,0,-1", "--sections", "4")
+    assert run(["measure", str(wall), "wall", *plane, "--ribbed", "--strip-mm", "50"]) == 0
+    assert "1 parts off by more than 10 mm" in capsys.readouterr().out
+    folder = wall / "measure"
+    with (folder / "wall-curves.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    shape = SheetPile(width=1.2, height=4.0, bulge=0.03, bulge_width=0.5)
+    for row in rows:
+        x, y = float(row["x_m"]), float(row["y_m"])
+        across = x + np.linspace(-0.02, 0.02, 5)
+        truth = -1e3 * shape.depth_at(across, np.full(5, y)).mean()
+        if abs(np.mod(x, 0.3) - 0.075) < 0.03:  # a strip within a face
+            assert abs(float(row["distance_mm"]) - truth) < 1.0
+        low, high = float(row["low_95_mm"]), float(row["high_95_mm"])
+        assert low <= float(row["distance_mm"]) <= high
+    (bulge,) = json.loads((folder / "wall.json").read_text("utf-8"))["details"]["anomalies"]
+    # Half of the height lies within a metre, where the bulge is 4 mm: the median takes that off.
+    assert bulge["distance_mm"] == pytest.approx(26, abs=1)
+    assert abs(bulge["y_m"]) < 0.1
+
+
+def test_the_map_opens_where_geotiff_does(wall):
+    from PIL import Image
+
+    plane = ("--point-m", "0,0,0.6", "--normal", "0,0,-1", "--name", "map")
+    assert run(["measure", str(wall), "wall", *plane, "--cell-mm", "50", "--sections", "0"]) == 0
+    with Image.open(wall / "measure" / "map.tif") as map_:
+        values = np.asarray(map_)
+        assert map_.tag_v2[33550] == pytest.approx((0.05, 0.05, 0.0))
+        assert map_.tag_v2[33922][3:5] == pytest.approx((0.0, 0.05 * len(values)))
+        assert "elevation of a wall" in map_.tag_v2[34737]
+    assert values[values > -9999].max() == pytest.approx(0.03, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--cell-mm", "0"), "--cell-mm must be above 0"),
+        (("--point-m", "0,0,1"), "together"),
+        (("--up", "0,0,1"), "--up"),
+        (("--sections", "-1"), "--sections"),
+        (("--cell-mm", "0.01", "--sections", "0"), "larger --cell-mm"),
+    ],
+)
+def test_what_makes_no_map_is_one_sentence(wall, capsys, words, said):
+    assert run(["measure", str(wall), "wall", *words]) == 2
+    text = capsys.readouterr().err
+    assert said in text
+    assert text.count("\n") == 1
