@@ -38,7 +38,8 @@ def test_what_comes_is_in_the_log_and_known_at_once(tmp_path):
     north = read_navigation_log(file).poses.positions[:, 0]
     assert len(north) >= 20
     assert np.all(np.diff(north) >= 0)
-    assert north[[0, -1]] == pytest.approx([0.0, 0.19], abs=1e-6)
+    # The last attitude may have come before the last place, and the first after the first.
+    assert north[[0, -1]] == pytest.approx([0.0, 0.19], abs=0.011)
     follower = NavigationFollower(
         link, stream_rig(), speed=None, along="x", crs=None, start_time=began, gap=0.5
     )
