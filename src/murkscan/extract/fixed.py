@@ -73,8 +73,11 @@ def _learn_levels(
     frames = [find_frame_ridges({0: low_bank.score(each)}, low_bank) for each in (base, *group)]
     standing = Standing.of(frames[0], frames[1:])
     is_surface = standing.are_surface(markov, lasers=lasers)
-    covered = standing.cover(is_surface, low.shape)
-    judged = standing.cover(standing.stand & ~is_surface, low.shape)
+    is_fixed = standing.stand & ~is_surface
+    # A stripe that moves by less than its width leaves a line as well, which stands nowhere.
+    lingers = frames[0].are_in_lines(frames[0].exist & (frames[0].heights > LEAST) & ~is_fixed)
+    covered = standing.cover(is_surface | lingers, low.shape)
+    judged = standing.cover(is_fixed, low.shape)
     return _stand_out(low, covered, judged, lasting, bank.noise, len(group))
 
 
