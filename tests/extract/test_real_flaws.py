@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter
 
+from murkscan._kernels.plateaus import measure_plateaus
 from murkscan.extract import Murk
 from murkscan.extract.clutter import bound_by_stays, usual_stays
 from murkscan.types.camera import Camera
@@ -130,6 +131,26 @@ def test_with_the_laser_off_dirt_is_no_stripe():
 def test_an_even_stripe_that_stands_still_in_a_clean_picture_is_found():
     stripes = _extract(_film([8.0 + _line(100.0 + 0 * LINES, 40.0)] * 24))
     assert sum(len(stripe) for stripe in stripes) == 24 * LENGTH
+
+
+def test_a_wide_stripe_that_moves_by_less_than_its_width_is_not_fixed():
+    """Half of it is lit in all frames, as a bed's stripe is on a stage that sinks a little."""
+    light = [8.0 + _line(98.0 + 5.0 * (i > 11) + 0 * LINES, 320.0, width=3.5) for i in range(24)]
+    stripes = _extract(_film([np.minimum(one, 255.0) for one in light]))
+    off = np.abs(_errors(stripes, lambda i: 98.0 + 5.0 * (i > 11) + 0 * LINES))
+    assert len(off) > 0.97 * 24 * LENGTH
+    assert np.mean(off < 0.5) > 0.98
+
+
+def test_a_band_of_white_is_found_beside_glare():
+    column = np.full(60, 20.0)
+    column[20:30], column[[30, 31]], column[5:20] = 255.0, (180.0, 60.0), 170.0
+    law = np.array([1.0, 0.0, 0.0, 1.0, 250.0])
+    middle, sigma, _, _ = measure_plateaus(
+        column[:, None], np.zeros(1, int), np.array([25.0]), law
+    )[0]
+    assert abs(middle - 24.8) < 1.0
+    assert sigma < 1.0
 
 
 @pytest.mark.parametrize("many", [1, 12])
