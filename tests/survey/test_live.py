@@ -1,5 +1,6 @@
 """A dive is recorded whole, shown while it goes on, and scanned when it is over."""
 
+import threading
 import time
 from dataclasses import replace
 
@@ -14,7 +15,7 @@ from murkscan.live import LiveFolder
 from murkscan.motion import ConstantSpeed
 from murkscan.motion.following import SteadyFollower
 from murkscan.project import Project
-from murkscan.survey.live import run_live
+from murkscan.survey.live import _play, run_live
 from murkscan.survey.live_settings import LiveSettings
 from murkscan.triangulate import RaySheet
 
@@ -180,3 +181,28 @@ def test_a_folder_of_other_things_is_refused(tmp_path):
     (tmp_path / "thesis.tex").write_text("mine")
     with pytest.raises(InputError, match="other files"):
         run_live("udp://127.0.0.1:9", stream_rig(), _settings(), out=tmp_path)
+
+
+class _Interrupted:
+    """A dive that is ended by hand while its stream is silent: its recorder takes a while."""
+
+    def __init__(self):
+        self.pictures, self.ticks, self.is_stopped = self, 0, False
+        self.is_over = threading.Event()
+
+    def tick(self):
+        self.ticks += 1
+        if self.ticks == 1:
+            raise KeyboardInterrupt
+
+    def stop(self):
+        self.is_stopped = True
+        threading.Timer(0.3, self.is_over.set).start()
+
+
+def test_a_dive_that_is_ended_by_hand_waits_until_its_recording_is_whole():
+    dive = _Interrupted()
+    _play(dive, until=lambda: False)
+    assert dive.is_stopped
+    assert dive.is_over.is_set()
+    assert dive.ticks > 1

@@ -147,7 +147,7 @@ def _dive(
     )
     for thread in threads:
         thread.start()
-    _play(stage, threads[0], until)
+    _play(stage, until)
     finder.frames.close()
     threads[1].join()
     stage.finish()
@@ -158,16 +158,17 @@ def _dive(
     folder.save(replace(folder.record or DiveRecord(source, 0.0), ended=True))
 
 
-def _play(stage: LiveStage, recorder: threading.Thread, until: Callable[[], bool]) -> None:
-    """Show the dive, tick by tick, until its pictures end, or somebody ends it."""
-    while True:
+def _play(stage: LiveStage, until: Callable[[], bool]) -> None:
+    """Show the dive, tick by tick, until its pictures end, or somebody ends it.
+
+    A thread cannot be waited for here: one whose `join` an interrupt breaks counts as ended.
+    """
+    while not stage.pictures.is_over.is_set():
         try:
-            while recorder.is_alive():
-                stage.tick()
-                if until():
-                    stage.pictures.stop()
-                recorder.join(TICK)
-            return
+            stage.tick()
+            if until():
+                stage.pictures.stop()
+            stage.pictures.is_over.wait(TICK)
         except KeyboardInterrupt:
             # Stopping by hand is how a dive ends; what follows is the scan.
             stage.pictures.stop()

@@ -48,6 +48,8 @@ class LiveSource(abc.ABC):
         """Why it ended, if by an error."""
         self.start = 0.0
         """Time of the first picture [s]."""
+        self.is_over = threading.Event()
+        """Set when it has ended, and all that was recorded is whole."""
         self._stopping, self._last = threading.Event(), time.monotonic()
 
     @property
@@ -68,6 +70,7 @@ class LiveSource(abc.ABC):
             self.failure = error
         finally:
             finder.frames.close()
+            self.is_over.set()
 
     @abc.abstractmethod
     def _give(self, finder: LiveFinder) -> None: ...
