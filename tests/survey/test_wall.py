@@ -7,7 +7,14 @@ import numpy as np
 import pytest
 
 from murkscan.cli.main import run
+from murkscan.page import render_page
+from murkscan.project import MESH, MeshResult, Project
+from murkscan.report import Model
+from murkscan.report.walls import wall_sections
 from murkscan.simulate.shapes import SheetPile
+from murkscan.survey.reported import digest_beside, tell_beside
+
+from ..projects import finish
 
 
 @pytest.fixture(scope="module")
@@ -74,3 +81,17 @@ def test_what_makes_no_map_is_one_sentence(wall, capsys, words, said):
     text = capsys.readouterr().err
     assert said in text
     assert text.count("\n") == 1
+
+
+def test_the_report_shows_walls_of_the_present_cloud(wall):
+    plane = ("--point-m", "0,0,0.6", "--normal", "0,0,-1", "--sections", "0")
+    assert run(["measure", str(wall), "wall", *plane, "--name", "quay", "--ribbed"]) == 0
+    project = Project(wall)
+    assert "wall quay" in digest_beside(project)
+    finish(project, MESH, MeshResult(0, 0))
+    told = tell_beside(project, Model(0, 0, 0, 0, None))
+    (quay,) = (one for one in told.walls if one.name == "quay")
+    assert quay.anomalies[0]["distance_mm"] > 20
+    page = render_page("Report", wall_sections([quay]))
+    assert "Wall in elevation: quay" in page
+    assert "../measure/quay.png" in page

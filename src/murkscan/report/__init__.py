@@ -41,3 +41,4 @@ from .timeline import make_timeline as make_timeline
 from .trust import AT_95 as AT_95
 from .trust import Trust as Trust
 from .trust import judge_trust as judge_trust
+from .walls import DrawnWall as DrawnWall

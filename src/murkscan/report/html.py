@@ -18,6 +18,7 @@ from .sections import (
 from .spread import Spread
 from .summary import ScanSummary
 from .trust import AT_95, Trust
+from .walls import wall_sections
 from .words import describe_range, rig_rows, setting_rows
 
 _SKIPS_SHOWN = 50
@@ -62,6 +63,7 @@ def as_html(summary: ScanSummary) -> str:
         )
         sections.append(Section("Uncertainty at 68 and 95 %", blocks))
     sections += placed_sections(summary.model.placed)
+    sections += wall_sections(summary.model.walls)
     if summary.recorded.correction:
         notes = [Note(f"{words[0].upper()}{words[1:]}.") for words in summary.recorded.correction]
         sections.append(Section("Trajectory", notes))

@@ -14,6 +14,7 @@ from .plain_numbers import round_off
 from .recorded import Model, Shown
 from .sections import calibration_blocks, repeat_blocks
 from .trust import AT_95, Trust
+from .walls import wall_sections, walls_as_plain
 from .words import rig_rows, setting_rows
 
 _TO_KNOW = (
@@ -117,6 +118,7 @@ def merged_as_html(summary: MergedSummary) -> str:
     if summary.trust is not None:
         sections.append(Section("Uncertainty at 68 and 95 %", _uncertainty(summary)))
     sections += placed_sections(summary.model.placed)
+    sections += wall_sections(summary.model.walls)
     for number, one in enumerate(summary.rigs, 1):
         blocks = [Table(rig_rows(one.rig)), *calibration_blocks(one.calibration, one.steps)]
         sections.append(Section(f"Rig {number}", blocks))
@@ -143,6 +145,7 @@ def merged_as_json(summary: MergedSummary) -> dict[str, Any]:
             "origin_m": list(model.origin),
         },
         "georeference": placed_as_plain(model.placed),
+        "walls": walls_as_plain(model.walls),
         "size_mm": None if model.size is None else [round_off(1e3 * edge) for edge in model.size],
         "uncertainty_mm": None if summary.trust is None else as_uncertainty(summary.trust),
         "not_in_uncertainty": list(summary.unstated),

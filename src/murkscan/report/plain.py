@@ -11,6 +11,7 @@ from .plain_verdicts import as_plain_verdicts
 from .summary import ScanSummary
 from .timeline import Timeline
 from .trust import AT_95, Trust
+from .walls import walls_as_plain
 from .words import rig_rows
 
 
@@ -26,6 +27,7 @@ def as_json(summary: ScanSummary) -> dict[str, Any]:
             "origin_m": list(model.origin),
         },
         "georeference": placed_as_plain(model.placed),
+        "walls": walls_as_plain(model.walls),
         "size_mm": None if model.size is None else [round_off(1e3 * edge) for edge in model.size],
         "signal_grey_levels": as_plain(summary.signal, 1.0),
         "depth_mm": as_plain(summary.depth, 1e3),

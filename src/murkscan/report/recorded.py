@@ -7,6 +7,7 @@ from typing import Any
 
 from ..types.background import Attenuation
 from .placed import Placed
+from .walls import DrawnWall
 
 
 @dataclass(frozen=True)
@@ -88,3 +89,5 @@ class Model:
     """Where the coordinates of mesh.stl and mesh.glb count from in the world [m]."""
     placed: Placed | None = None
     """Where it lies on the Earth, if somebody has said so."""
+    walls: Sequence[DrawnWall] = ()
+    """Walls that were drawn in elevation."""

@@ -9,7 +9,6 @@ from ..io.values import as_plain
 from ..project import (
     CLOUD,
     EXTRACT,
-    GEOREFERENCE,
     MESH,
     REPORT,
     STAGES,
@@ -17,17 +16,13 @@ from ..project import (
     Project,
     ReportResult,
     digest,
-    is_georeferenced,
     is_merged,
     load_scan_rig,
 )
 from ..report import (
     AT_95,
     CalibrationStep,
-    ControlRow,
     MergedSummary,
-    Model,
-    Placed,
     ScanSummary,
     Shown,
     as_html,
@@ -41,6 +36,7 @@ from ..view import PICTURES
 from .merged_report import summarise_merged
 from .progress import Progress, silent
 from .recorded import tell_recording
+from .reported import digest_beside, tell_beside
 from .stage_runner import run_stage
 
 
@@ -68,8 +64,7 @@ def write_report(
         raise InputError(f"The wanted spacing must be above 0 mm, got {1e3 * spacing:g} mm.")
     told = replace(project.load_scan(), started=None)
     inputs = {"view": project.finished(VIEW).digest, "scan": digest(as_plain(told))}
-    if is_georeferenced(project):
-        inputs["georeference"] = project.finished(GEOREFERENCE).digest
+    inputs |= digest_beside(project)
     stage = project.stage(REPORT, settings={"spacing": spacing}, inputs=inputs)
 
     def make(summary: ScanSummary | MergedSummary) -> ReportResult:
@@ -82,21 +77,11 @@ def write_report(
     def prepare() -> ScanSummary | MergedSummary:
         if is_merged(project):
             merged = summarise_merged(project, _pictures(project))
-            return replace(merged, model=_place(project, merged.model))
+            return replace(merged, model=tell_beside(project, merged.model))
         summary = _summarise(project, spacing)
-        return replace(summary, model=_place(project, summary.model))
+        return replace(summary, model=tell_beside(project, summary.model))
 
     return run_stage(project, stage, make, prepare=prepare, progress=progress)
-
-
-def _place(project: Project, model: Model) -> Model:
-    """Say where the model's files count from, and where on the Earth it lies."""
-    origin = project.finished(MESH).result.origin
-    if not is_georeferenced(project):
-        return replace(model, origin=origin)
-    told = project.finished(GEOREFERENCE).result
-    rows = [ControlRow(one.name, one.residual, one.sigma) for one in told.points]
-    return replace(model, origin=origin, placed=Placed(told.crs, rows, told.rms, told.remarks))
 
 
 def _in_short(summary: ScanSummary) -> ReportResult:
