@@ -89,6 +89,7 @@ def main() -> None:
             if case.scene not in made:
                 made[case.scene] = _make(case.scene, root / case.scene)
             figures += _stream(case, made[case.scene], root / f"dive-{case.port}", seconds)
+            print("\n".join(one.as_row() for one in figures[-6:]), flush=True)
         figures += _compare(root / "compared")
     load = os.getloadavg()[0]
     note = (
@@ -178,6 +179,7 @@ def _settings(
         RaySheet(),
         spacing=SPACING,
         fields=fields,
+        timeout=120.0,  # the sender is a process of its own, which has to begin first
         learner=Processes(1),
     )
 

@@ -2,6 +2,7 @@
 
 import threading
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -153,7 +154,8 @@ def _dive(
     stage.finish()
     if pictures.failure is not None:
         failed = replace(_last_status(show), state="failed", message=str(pictures.failure))
-        show.save_status(failed)
+        with suppress(MurkscanError):  # the disk may be full
+            show.save_status(failed)
         raise pictures.failure
     folder.save(replace(folder.record or DiveRecord(source, 0.0), ended=True))
 

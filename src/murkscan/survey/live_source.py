@@ -5,7 +5,7 @@ import threading
 import time
 from contextlib import closing
 from dataclasses import replace
-from typing import final
+from typing import ClassVar, final
 
 import numpy as np
 
@@ -39,6 +39,9 @@ _SILENT = 2.0
 
 class LiveSource(abc.ABC):
     """Gives frames to a finder until it is stopped or its pictures end."""
+
+    word: ClassVar[str]
+    """What goes on, in a word."""
 
     def __init__(self) -> None:
         """Begin with nothing."""
@@ -79,6 +82,8 @@ class LiveSource(abc.ABC):
 @final
 class RecordedSource(LiveSource):
     """A stream or a camera: each picture goes to the disk first, and then to the finder."""
+
+    word: ClassVar[str] = "Recording."
 
     def __init__(
         self,
@@ -181,6 +186,8 @@ def _check_size(picture: ArrivedPicture, rig: Rig, source: str) -> None:
 @final
 class ReplayedSource(LiveSource):
     """A recording at its own speed; it stays where it is, and nothing is recorded."""
+
+    word: ClassVar[str] = "Replaying."
 
     def __init__(self, recording: AbstractRecording) -> None:
         """Take a recording with times."""

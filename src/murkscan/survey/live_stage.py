@@ -133,7 +133,7 @@ class LiveStage:
             )
         if self._finder.background is None:
             return "learning", "Pictures come and are recorded; learning what they look like."
-        return "live", "Recording."
+        return "live", self.pictures.word
 
     def _warn(self, free: int) -> list[str]:
         warnings = [text for text in (self._finder.failure, self._failure) if text]
