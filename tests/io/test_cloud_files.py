@@ -396,3 +396,21 @@ def test_a_full_disk_is_one_sentence_and_leaves_what_stood_there(tmp_path, suffi
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
     assert path.read_bytes() == before
     assert [file.name for file in tmp_path.iterdir()] == [path.name]
+
+
+@pytest.mark.parametrize(
+    ("name", "head", "form", "comma"),
+    [
+        ("count.xyz", "3\n", "{} {} {}", "."),
+        ("cloudcompare.xyz", "//X Y Z Original cloud index\n3\n", "{} {} {} 7", "."),
+        ("names.csv", "Coord. X,Coord. Y,Coord. Z,Scalar field\n", "{},{},{},7", "."),
+        ("german.csv", "X;Y;Z\n", "{};{};{}", ","),
+        ("german.xyz", "", "{} {} {}", ","),
+        ("german_tabs.xyz", "x\ty\tz\n", "{}\t{}\t{}", ","),
+    ],
+)
+def test_text_of_other_programs_is_read_as_they_write_it(tmp_path, name, head, form, comma):
+    points = np.array([[0.5, -1.25, 2.0], [1.5, 0.25, 3.5], [10.0, 1e-3, -0.75]])
+    lines = [form.format(*(repr(x).replace(".", comma) for x in row)) for row in points.tolist()]
+    (tmp_path / name).write_text(head + "\n".join(lines) + "\n", "utf-8")
+    np.testing.assert_array_equal(load_cloud_file(tmp_path / name).points, points)

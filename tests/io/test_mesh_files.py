@@ -292,3 +292,17 @@ def test_a_mesh_without_triangles_is_not_written(tmp_path):
     with pytest.raises(InputError, match="no triangles"):
         save_mesh(tmp_path / "mesh.stl", Mesh(np.zeros((0, 3)), np.zeros((0, 3), int)))
     assert list(tmp_path.iterdir()) == []
+
+
+def test_corners_that_count_backwards_are_those_of_their_own_part(tmp_path):
+    part = "v 0 0 {z}\nv 1 0 {z}\nv 0 1 {z}\nf -3//-1 -2//-1 -1//-1\n"
+    (tmp_path / "parts.obj").write_text(part.format(z=0) + part.format(z=1), "utf-8")
+    mesh = load_mesh(tmp_path / "parts.obj")
+    np.testing.assert_array_equal(mesh.vertices[mesh.faces][:, :, 2], [[0, 0, 0], [1, 1, 1]])
+
+
+def test_a_corner_before_the_first_is_refused(tmp_path):
+    text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -4 -2 -1\n"
+    (tmp_path / "before.obj").write_text(text, "utf-8")
+    with pytest.raises(FormatError, match="corner 0"):
+        load_mesh(tmp_path / "before.obj")

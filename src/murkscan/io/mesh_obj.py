@@ -13,6 +13,8 @@ _GEOMETRY = re.compile(rb"^[vf][ \t].*$", re.MULTILINE)
 """Lines that place corners and triangles; the others name groups and materials."""
 _EXTRAS = re.compile(rb"/\S*")
 """What a corner of a face says beside its vertex: texture and normal."""
+_RELATIVE = re.compile(rb"^f[ \t].*-", re.MULTILINE)
+"""A face whose corners count backwards from the last vertex before it."""
 _NO_CORNER = re.compile(rb"^f[ \t](?:.*[ \t])?[-+]?0+(?=[ \t]|$)", re.MULTILINE)
 
 
@@ -45,9 +47,32 @@ def only_geometry(path: Path, data: bytes) -> bytes:
     """
     lines = _GEOMETRY.findall(data.replace(b"\r\n", b"\n").replace(b"\\\n", b" "))
     text = _EXTRAS.sub(b"", b"\n".join(lines))
+    if _RELATIVE.search(text):
+        text = _count_from_start(text)
     if wrong := _NO_CORNER.search(text):
         raise FormatError(
             f"{path} has a face with the corner 0 ({wrong[0][:40].decode('ascii', 'replace')!r}), "
             "but corners count from 1; it is damaged."
         )
     return text
+
+
+def _count_from_start(text: bytes) -> bytes:
+    """Let corners that count backwards from the last vertex count from the first."""
+    lines, count = [], 0
+    for line in text.split(b"\n"):
+        words = line.split()
+        if words[:1] == [b"v"]:
+            count += 1
+        elif words and any(word.startswith(b"-") for word in words[1:]):
+            line = b" ".join([b"f", *(_from_start(word, count) for word in words[1:])])
+        lines.append(line)
+    return b"\n".join(lines)
+
+
+def _from_start(word: bytes, count: int) -> bytes:
+    try:
+        number = int(word)
+    except ValueError:
+        return word
+    return word if number >= 0 else b"%d" % (count + 1 + number)

@@ -1,10 +1,9 @@
 """Points as text, one a line: .xyz for every program, .csv with all columns."""
 
 import codecs
-import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from itertools import chain
+from itertools import chain, islice
 from pathlib import Path
 from typing import BinaryIO
 
@@ -17,9 +16,9 @@ from ..types.cloud import PointCloud
 from .atomic import replacing
 from .blocks import lines_at_once
 from .cloud_columns import BLOCK, COLUMNS, as_rows, from_columns, known_name
+from .xyz_layout import COMMENTS, HEAD, find_layout
 
 _LONGEST_LINE = 4000
-_COMMENTS = ("#", "//")
 _UNIT = 1e-3
 """How far three numbers may be from unit length and still be a normal."""
 _NAMES = [*(COLUMNS.names or ())]
@@ -68,7 +67,9 @@ def writing_csv(path: Path) -> Iterator[Callable[[PointCloud], None]]:
 def iterate_xyz(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud]:
     """Read points from text: numbers parted by blanks, tabs, commas or semicolons.
 
-    The first line may name the columns, also after # or //. Without names the first three are x, y
+    The first line may name the columns, also after # or //; one number alone on the line before the
+    points is their count. Between semicolons, tabs or blanks a comma is the decimal sign. Without
+    names the first three are x, y
     and z [m]; of six, the last three are the normal if they have unit length.
 
     Raises:
@@ -76,12 +77,15 @@ def iterate_xyz(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud]:
         FileNotFoundError: There is no such file.
     """
     with path.open("rb") as file:
-        lines = _lines(file, path)
-        first = next(lines, "")
-        names = _names(first)
-        if first and not names:
-            lines = chain([first], lines)
-        lines = (line for line in lines if not line.startswith(_COMMENTS))
+        rest = _lines(file, path)
+        head = list(islice(rest, HEAD))
+        layout = find_layout(head)
+        names = list(layout.names)
+        lines = (
+            layout.as_numbers(line)
+            for line in chain(head[layout.num_skipped :], rest)
+            if not line.startswith(COMMENTS)
+        )
         width = 0
         while some := lines_at_once(lines, block):
             values = _parse(some, path)
@@ -102,7 +106,7 @@ def iterate_xyz(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud]:
 
 
 def _lines(file: BinaryIO, path: Path) -> Iterator[str]:
-    """Give the lines that are not empty, with blanks between the numbers."""
+    """Give the lines that are not empty."""
     if file.read(len(codecs.BOM_UTF8)) != codecs.BOM_UTF8:
         file.seek(0)
     while line := file.readline(_LONGEST_LINE):
@@ -110,13 +114,7 @@ def _lines(file: BinaryIO, path: Path) -> Iterator[str]:
             raise FormatError(f"{path} has a line longer than {_LONGEST_LINE} bytes.")
         text = line.decode("ascii", "replace").strip()
         if text:
-            yield re.sub(r"[,;\t]", " ", text)
-
-
-def _names(line: str) -> list[str]:
-    """Give the names of the columns; none where the line holds numbers."""
-    words = line.lstrip("#/ ").split()
-    return words if any(known_name(word) for word in words) else []
+            yield text
 
 
 def _guess(values: np.ndarray) -> list[str]:
@@ -130,7 +128,7 @@ def _guess(values: np.ndarray) -> list[str]:
 
 def _parse(lines: list[str], path: Path) -> np.ndarray:
     try:
-        return np.loadtxt(lines, ndmin=2, comments=_COMMENTS)
+        return np.loadtxt(lines, ndmin=2, comments=COMMENTS)
     except ValueError as error:
         raise FormatError(
             f"{path} cannot be read as columns of numbers: a line holds something else, or more or "

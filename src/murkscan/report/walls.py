@@ -51,9 +51,14 @@ def _blocks(wall: DrawnWall) -> list[Block]:
     if not wall.anomalies:
         return [*blocks, Note("No part of the wall is off by more than was asked for.")]
     keys = [key for key in _COLUMNS if key in wall.anomalies[0]]
-    rows = [[one[key] for key in keys] for one in wall.anomalies[:_SHOWN]]
+    rows = [[_as_cell(key, one[key]) for key in keys] for one in wall.anomalies[:_SHOWN]]
     blocks.append(Table(rows, head=tuple(_COLUMNS[key] for key in keys)))
     if len(wall.anomalies) > _SHOWN:
         rest = len(wall.anomalies) - _SHOWN
         blocks.append(Note(f"And {rest} more, listed in measure/{wall.name}-anomalies.csv."))
     return blocks
+
+
+def _as_cell(key: str, value: float) -> str | float:
+    """Give a number; places in a grid to the millimetre, whatever their size."""
+    return f"{value:.3f}" if key in ("easting_m", "northing_m") else value
