@@ -22,7 +22,7 @@ from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp
 
 from ..errors import FormatError, InputError, MurkscanError
-from .boards import Boards, ask_for_photo, tell_drawn, tell_sight
+from .boards import Boards, ask_for_photo, tell_sight
 from .commands import make_command
 from .dives import pack_points, tell_dive
 from .finds import look_around
@@ -70,7 +70,6 @@ def make_app(
         Route("/api/plan", _said(studio.plan)),
         Route("/api/scan", _said(studio.scan)),
         Route("/api/boards", _said(studio.boards)),
-        Route("/api/drawn", _said(studio.drawn)),
         Route("/api/sight", _said(studio.sight)),
         Route("/api/sight/take", _said(studio.photo), methods=["POST"]),
         Route("/api/dive", _said(studio.dive)),
@@ -135,12 +134,6 @@ class _Studio:
         """Say which photos of a folder show a board."""
         asked = request.query_params
         task = partial(self._boards.tell, asked.get("folder", ""), asked.get("board", ""))
-        return await to_thread.run_sync(task)
-
-    async def drawn(self, request: Request) -> Any:
-        """List what a calibration drew."""
-        asked = request.query_params
-        task = partial(tell_drawn, self._sandbox, asked.get("rig", ""), asked.get("step", ""))
         return await to_thread.run_sync(task)
 
     async def sight(self, request: Request) -> Any:

@@ -16,8 +16,6 @@ from .sandbox import Sandbox
 _KEPT = 4
 """Folders whose photos are remembered."""
 _BOARD = re.compile(r"(\d{1,3})x(\d{1,3})")
-_DRAWN = ".found.jpg"
-_STEPS = re.compile(r"camera|port|mount|check|laser_[\d_]+")
 
 
 class Boards:
@@ -62,26 +60,6 @@ class Boards:
                 "rms_px": so_far.rms,
             },
         }
-
-
-def tell_drawn(sandbox: Sandbox, rig: str, step: str) -> dict[str, Any]:
-    """List what a calibration drew beside a rig file: its page, and each photo.
-
-    Raises:
-        InputError: The rig does not lie in the folder, or there is no such step.
-    """
-    if not _STEPS.fullmatch(step):
-        raise InputError(f"{step[:20]!r} is no step of a calibration.")
-    folder = sandbox.resolve(rig).parent / "calibrate" / step
-    page = folder / "index.html"
-    drawn = sorted(folder.glob(f"*{_DRAWN}"))[:100] if folder.is_dir() else []
-    return {
-        "page": f"{sandbox.name(page)}?{page.stat().st_mtime_ns}" if page.exists() else "",
-        "photos": [
-            [path.name.removesuffix(_DRAWN), f"{sandbox.name(path)}?{path.stat().st_mtime_ns}"]
-            for path in drawn
-        ],
-    }
 
 
 def tell_sight(sandbox: Sandbox, name: str) -> dict[str, Any]:

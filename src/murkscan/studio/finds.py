@@ -9,8 +9,10 @@ from .sandbox import Sandbox
 
 _DEEPEST = 4
 """Folders below the studio's that are looked into."""
-_MOST = 5000
-"""Entries that are looked at, so that a home folder or a network disk cannot hold the page up."""
+_MOST = 1000
+"""Folders that are looked at, so that a home folder or a network disk cannot hold the page up."""
+_LONGEST_RIG = 2_000_000
+"""Bytes of a rig file, at most: a long covariance has a tenth of it."""
 _VIDEOS = {".mkv", ".mp4", ".mov", ".avi", ".ts", ".mts", ".m4v", ".h264", ".mcap", ".bag", ".sdp"}
 _PHOTOS = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".pgm"}
 _LOGS = {".csv", ".txt", ".tum", ".tlog", ".nmea", ".mcap", ".bag"}
@@ -40,7 +42,7 @@ def look_around(sandbox: Sandbox) -> Found:
     """List what lies in the folder, as far as is quickly seen."""
     found, seen = Found(), 0
     for folder, folders, files in _walk(sandbox.root):
-        seen += len(files) + 1
+        seen += 1
         if seen > _MOST:
             found.is_cut = True
             break
@@ -51,7 +53,15 @@ def look_around(sandbox: Sandbox) -> Found:
             folders.clear()
             continue
         _sort_in(found, sandbox, folder, files)
-    for names in (found.rigs, found.scans, found.dives, found.recordings, found.photos, found.logs):
+    for names in (
+        found.rigs,
+        found.scans,
+        found.dives,
+        found.recordings,
+        found.photos,
+        found.logs,
+        found.meshes,
+    ):
         names.sort()
     return found
 
@@ -90,8 +100,9 @@ def _sort_in(found: Found, sandbox: Sandbox, folder: Path, files: list[str]) -> 
 def _is_rig(path: Path) -> bool:
     """Tell whether a TOML file has the tables of a rig; a scene has a rig's inside."""
     try:
-        text = path.read_text("utf-8-sig", errors="replace")[:200_000]
+        if not path.is_file() or path.stat().st_size > _LONGEST_RIG:
+            return False
+        lines = path.read_text("utf-8-sig", errors="replace").splitlines()
     except OSError:
         return False
-    lines = [line.strip() for line in text.splitlines()]
-    return any(line in ("[camera]", "[[laser]]", "[calibration]") for line in lines)
+    return any(line.strip() in ("[camera]", "[[laser]]", "[calibration]") for line in lines)

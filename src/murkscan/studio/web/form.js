@@ -70,7 +70,7 @@ export function commandForm({ page, command, fields, run = "Begin", values: fixe
   element.read = read;
   element.set = (key, value) => { inputs.get(key).value = value; write(); };
   element.input = (key) => inputs.get(key);
-  element.suggest = (key, names) => inputs.get(key).list?.replaceChildren(...names.map((name) => make("option", { value: name })));
+  element.suggest = (key, names) => inputs.get(key)?.list?.replaceChildren(...names.map((name) => make("option", { value: name })));
   queueMicrotask(write);
   return element;
 }

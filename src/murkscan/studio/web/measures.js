@@ -1,5 +1,6 @@
 // Measures that are typed rather than picked on the model.
 
+import { studio } from "./ask.js";
 import { make } from "./dom.js";
 import { commandForm } from "./form.js";
 
@@ -8,8 +9,8 @@ const PART = [
   { key: "within-mm", label: "as far as", unit: "mm", kind: "number" },
 ];
 const DRAWING = [
-  { key: "reference", label: "Drawing’s mesh in the folder", placeholder: "hull.stl" },
-  { key: "unit", label: "Its unit", kind: "select", options: ["m", "mm"] },
+  { key: "reference", label: "Drawing’s mesh in the folder", placeholder: "hull.stl", list: [] },
+  { key: "unit", label: "Its unit", kind: "select", options: ["m", "cm", "mm", "in"] },
 ];
 const KINDS = {
   sphere: ["Sphere", PART],
@@ -43,10 +44,12 @@ export function measureForms(scan) {
   }));
   function open(kind) {
     for (const tab of tabs) tab.setAttribute("aria-pressed", tab.dataset.kind === kind);
-    place.replaceChildren(commandForm({
+    const form = commandForm({
       page: "look", command: `measure ${kind}`, run: "Measure", values: { out: scan },
       fields: [...KINDS[kind][1], { key: "name", label: "Name", value: kind }],
-    }));
+    });
+    place.replaceChildren(form);
+    form.suggest("reference", studio.state?.found.meshes ?? []);
   }
   open("sphere");
   return make("div", { className: "form" }, make("div", { className: "choice", role: "group" }, tabs), place);

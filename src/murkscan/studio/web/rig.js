@@ -17,7 +17,8 @@ export function rigPage(page) {
   const none = note("There is no rig file in this folder yet: calibrate a camera, and it is made; or bring one.", "");
   const head = make("div", { className: "toolbar" }, make("label", {}, make("span", { textContent: "Rig" }), chosen),
     uploader({ label: "Bring a rig file", accept: ".toml", multiple: false, nameOf: (file) => file.name }));
-  page.append(make("h1", { textContent: "Rig" }), head, none, cards, board());
+  const cut = note("This folder holds more than is looked at: begin the studio in one for this work alone.", "warning");
+  page.append(make("h1", { textContent: "Rig" }), head, cut, none, cards, board());
   chosen.onchange = load;
 
   let last = "";
@@ -34,6 +35,7 @@ export function rigPage(page) {
   return listen((state) => {
     const { rigs } = state.found;
     none.hidden = rigs.length > 0;
+    cut.hidden = !state.found.is_cut;
     chosen.disabled = rigs.length === 0;
     const key = JSON.stringify([rigs, state.jobs.map((job) => [job.name, job.state])]);
     if (key === last) return;
