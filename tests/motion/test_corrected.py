@@ -79,6 +79,17 @@ def test_it_says_how_far_and_how_sure_and_what_is_open(corrected):
     assert "Over 3.0 s" in tell_doubt(doubted)
 
 
+def test_a_way_without_positions_begins_where_its_log_does():
+    one = scan(1e-3)
+    summed = replace(one.navigation, position=None)
+    logged = logged_way(one.times)
+    logged = replace(logged, positions=logged.positions + np.array([3.0, 4.0, 0.0]))
+    source = Measured(summed, Pose.identity(), is_placed=True)
+    found = correct_motion(source, [as_profile(one)], logged, ("x", "x"))
+    np.testing.assert_allclose(found.trajectory.positions[0], logged.positions[0])
+    assert found.moved.max() < 0.03
+
+
 def test_one_laser_on_one_pass_shows_no_place_twice():
     one = scan(1e-3, lasers=1)
     logged = logged_way(one.times)

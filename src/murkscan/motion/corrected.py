@@ -71,6 +71,9 @@ def correct_motion(
         return None
     ways = adjusted.trajectory(0, times), adjusted.trajectory_as_logged(0, times)
     found, blind = (_as_camera(way, measured) for way in ways)
+    if measured.is_placed and measured.navigation.position is None:
+        # Where a way begins that is summed up from velocities, no instrument has measured.
+        found = replace(found, positions=found.positions + logged.positions[0] - found.positions[0])
     return Correction(
         found,
         np.linalg.norm(found.positions - logged.positions, axis=1),

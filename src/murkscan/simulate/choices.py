@@ -8,12 +8,13 @@ from typing import Any, get_type_hints
 from pydantic import TypeAdapter, ValidationError
 
 from ..errors import InputError
-from .shapes import Chessboard, Cylinder, Hull, Plane, SheetPile, Sphere, Stairs
+from .shapes import Chessboard, Cylinder, Grown, Hull, Plane, SheetPile, Sphere, Stairs
 from .textures import Bands, Checkered, Growth, Plain
 
 SHAPES: dict[str, type] = {
     "chessboard": Chessboard,
     "cylinder": Cylinder,
+    "grown": Grown,
     "hull": Hull,
     "plane": Plane,
     "sheet_pile": SheetPile,
@@ -29,7 +30,7 @@ TEXTURES: dict[str, type] = {
 }
 """Ways in which a surface may be painted."""
 _LENGTHS = {"width", "height", "widths", "heights", "radius", "length", "beam", "draft", "tread",
-            "square", "size", "rib", "depth", "bulge", "bulge_width"}  # fmt: skip
+            "square", "size", "rib", "depth", "bulge", "bulge_width", "bump"}  # fmt: skip
 """Fields that are lengths: their keys carry the unit."""
 _RENAMED = {"share": "albedo"}
 """Fields whose keys have the name that people look for."""

@@ -14,6 +14,7 @@ from ..types.arrays import Scalars
 from ..types.pose import Pose
 from ..types.rig import Rig
 from ..types.trajectory import Trajectory
+from .instruments import Instruments
 from .overlay import Overlay
 from .particles import Particles
 from .processing import Processing
@@ -52,7 +53,7 @@ class Scene:
     """Whether the sheet's own glow is drawn."""
     forward_scattering: bool = True
     """Whether the water spreads sheet and picture."""
-    navigation: Navigation | None = None
+    navigation: Navigation | Instruments | None = None
     """What the vehicle's own log is like; None: there is none."""
     seed: int = 0
     """Where noise and particles start."""

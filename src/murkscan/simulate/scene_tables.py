@@ -17,10 +17,12 @@ from ..optics.phase_henyey_greenstein import HenyeyGreenstein
 from ..optics.phase_petzold import PetzoldHarbour
 from ..optics.turbidity import medium_of
 from ..types.mesh import Mesh
+from ..types.navigation import NavigationAccuracy
 from ..types.pose import Pose
 from ..types.water import Water
 from .camera_tables import LightTable, OverlayTable, SensorTable, WindowTable
 from .choices import SHAPES, TEXTURES, make_choice
+from .instruments import Instruments
 from .particles import Particles
 from .surface import Body
 from .table import OpenTable, Table
@@ -186,18 +188,52 @@ class VehicleTable(Table):
 class NavigationTable(Table):
     """[motion.navigation]: what the vehicle's own log says."""
 
+    kind: Literal["poses", "dvl", "ahrs"] = "poses"
     rate_hz: FiniteFloat = 10.0
     position_noise_mm: FiniteFloat = 0.0
     attitude_noise_deg: FiniteFloat = 0.0
+    attitude_bias_deg: FiniteFloat = 0.0
+    heading_drift_deg_min: FiniteFloat = 0.0
+    depth_noise_mm: FiniteFloat = 0.0
+    velocity_noise_mm_s: FiniteFloat = 0.0
+    velocity_bias_mm_s: FiniteFloat = 0.0
     latency_ms: FiniteFloat = 0.0
 
-    def as_navigation(self) -> Navigation:
-        """Give the log's qualities."""
+    def as_navigation(self) -> Navigation | Instruments:
+        """Give the log's qualities.
+
+        Raises:
+            InputError: They go with another kind of log.
+        """
+        others = ("attitude_bias_deg", "heading_drift_deg_min", "depth_noise_mm",
+                  "velocity_noise_mm_s", "velocity_bias_mm_s")  # fmt: skip
+        wrong = others if self.kind == "poses" else ("position_noise_mm",)
+        wrong = (*wrong, *others[3:]) if self.kind == "ahrs" else wrong
+        for key in wrong:
+            if getattr(self, key):
+                raise InputError(f"motion.navigation.{key} does not go with kind {self.kind!r}.")
+        if self.kind != "poses":
+            return self._as_instruments(self.kind)
         return Navigation(
             self.rate_hz,
             self.position_noise_mm / 1e3,
             math.radians(self.attitude_noise_deg),
             self.latency_ms / 1e3,
+        )
+
+    def _as_instruments(self, kind: Literal["dvl", "ahrs"]) -> Instruments:
+        return Instruments(
+            kind,
+            self.rate_hz,
+            self.latency_ms / 1e3,
+            NavigationAccuracy(
+                velocity_noise=self.velocity_noise_mm_s / 1e3 or None,
+                velocity_bias=self.velocity_bias_mm_s / 1e3,
+                attitude_noise=math.radians(self.attitude_noise_deg) or None,
+                attitude_bias=math.radians(self.attitude_bias_deg),
+                heading_drift=math.radians(self.heading_drift_deg_min) / 60,
+                depth_noise=self.depth_noise_mm / 1e3 or None,
+            ),
         )
 
 

@@ -4,7 +4,7 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +12,7 @@ import numpy as np
 from ..errors import InputError
 from ..io.images import write_image
 from ..io.mesh_files import save_mesh
+from ..io.navigation_writing import save_navigation
 from ..io.parquet import writing_true_stripes
 from ..io.poses import save_poses
 from ..io.rig_toml import save_rig
@@ -31,6 +32,8 @@ from ..project import (
     record_of,
 )
 from ..simulate import Scene, SimulatedFrame, Simulator, as_colour, log_navigation
+from ..simulate.instruments import Instruments, measure_way
+from ..types.rig import Rig
 from ..types.trajectory import Trajectory
 from .progress import Progress, silent
 from .stage_runner import run_stage
@@ -74,7 +77,8 @@ def simulate_recording(
 
     acceptance.toml says what is known of the scene's artefacts, where it has some. poses.csv holds
     the true poses at the frames' own times, of the vehicle where the rig has a mount;
-    navigation.csv what the vehicle's log says, where the scene has one.
+    navigation.csv what the vehicle's log says, where the scene has one; of instruments rig.toml
+    states how good they are.
 
     A simulation that is done with the same scene is skipped; one that was stopped is made anew.
 
@@ -165,7 +169,7 @@ def _draw_ahead(simulator: Simulator) -> Iterator[SimulatedFrame]:
 
 def _write_rig_and_trajectory(scene: Scene, files: StageFiles) -> None:
     with files.making("rig.toml") as path:
-        save_rig(path, scene.rig)
+        save_rig(path, _as_stated(scene))
     if scene.acceptance:
         with files.making("acceptance.toml") as path:
             save_text(path, scene.acceptance)
@@ -174,7 +178,18 @@ def _write_rig_and_trajectory(scene: Scene, files: StageFiles) -> None:
     if scene.navigation is not None:
         trajectory = _as_logged(scene, scene.trajectory)
         with files.making("navigation.csv") as path:
-            save_poses(path, log_navigation(scene.navigation, trajectory, seed=scene.seed))
+            if isinstance(scene.navigation, Instruments):
+                measured = measure_way(scene.navigation, trajectory, seed=scene.seed)
+                save_navigation(path, measured)
+            else:
+                save_poses(path, log_navigation(scene.navigation, trajectory, seed=scene.seed))
+
+
+def _as_stated(scene: Scene) -> Rig:
+    """Give the rig with what its vehicle's instruments are stated to be good to."""
+    if not isinstance(scene.navigation, Instruments):
+        return scene.rig
+    return replace(scene.rig, navigation=scene.navigation.accuracy)
 
 
 def _as_logged(scene: Scene, trajectory: Trajectory) -> Trajectory:
