@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ..project import Project
     from ..types.dent import Dent
 
-Unit = Annotated[Literal["m", "cm", "mm", "in"], Parameter(help="Unit of the file.")]
+Unit = Annotated[Literal["m", "cm", "mm", "in", "ft"], Parameter(help="Unit of the file.")]
 AsGiven = Annotated[
     bool,
     Parameter(

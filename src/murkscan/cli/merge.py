@@ -1,7 +1,7 @@
 """murkscan merge: several passes, or clouds of others, into one cloud."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
@@ -16,6 +16,7 @@ def merge(
     reach_mm: float | None = None,
     voxel_mm: float | None = None,
     as_logged: Annotated[bool, Parameter(negative=())] = False,
+    unit: Literal["m", "cm", "mm", "in", "ft"] = "m",
 ) -> None:
     """Lay several scans of one object on another and merge them into one cloud.
 
@@ -26,7 +27,7 @@ def merge(
     Parameters
     ----------
     passes
-        Folders of scans, or clouds as .ply, .las, .laz, .e57, .xyz or .csv in metres. One alone is
+        Folders of scans, or clouds as .ply, .las, .laz, .e57, .xyz or .csv. One alone is
         imported; a folder that was merged stands for its passes.
     out
         A new folder for the merged cloud.
@@ -37,12 +38,15 @@ def merge(
         Thin the merged cloud to one point a voxel of this edge [mm]: means, weighted by sigma.
     as_logged
         Move nothing: the poses of all passes are in one frame already, and good enough.
+    unit
+        Unit of the clouds of other programs, of places and sigmas; scans are in metres.
     """
     if not passes:
         raise InputError("Give the folders of two scans or more: murkscan merge A B --out OUT.")
     for flag, value in (("--reach-mm", reach_mm), ("--voxel-mm", voxel_mm)):
         if value is not None and not 0 < value < float("inf"):
             raise InputError(f"{flag} must be above 0, got {value:g}.")
+    from ..measure.reference import UNITS
     from ..survey.merge import merge_passes
     from .summary import print_result
     from .words import tell
@@ -54,6 +58,7 @@ def merge(
             align=not as_logged,
             reach=None if reach_mm is None else reach_mm / 1e3,
             voxel=None if voxel_mm is None else voxel_mm / 1e3,
+            unit=UNITS[unit],
             command=WORDS.get(),
             progress=progress,
         )

@@ -16,7 +16,7 @@ from ..types.arrays import Directions, Points, Scalars
 from ..types.cloud import PointCloud
 from ..types.mesh import Mesh
 
-UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254}
+UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254, "ft": 0.3048}
 """Lengths of the units that meshes come in [m]."""
 
 _PILE = 1000

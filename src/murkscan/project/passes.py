@@ -31,19 +31,25 @@ _LAST_FRAME = 2**31 - 1
 """The highest number of a frame that a cloud holds."""
 
 
-def expand_merged(paths: Sequence[Path]) -> Iterator[Path]:
+def expand_merged(paths: Sequence[Path], *, unit: float = 1.0) -> Iterator["PassSource"]:
     """Put the passes of a merged folder in its place, so that all errors are traced anew.
 
     One that was imported from a single cloud of another program stays as it is.
+
+    Args:
+        paths: Folders of scans and of merged clouds, and files of clouds.
+        unit: Length of the files' unit [m]; a folder is in metres.
     """
     for path in paths:
         passes: Sequence[PassRecord] = ()
         if path.is_dir() and is_merged(project := Project(path)):
             passes = project.load_scan().passes
         if len(passes) > 1 or any(one.scan is not None for one in passes):
-            yield from (Path(os.path.normpath(path / one.path)) for one in passes)
+            yield from (
+                PassSource(Path(os.path.normpath(path / one.path)), one.scale) for one in passes
+            )
         else:
-            yield path
+            yield PassSource(path, 1.0 if path.is_dir() else unit)
 
 
 @dataclass(frozen=True)
@@ -51,12 +57,14 @@ class PassSource:
     """The folder of a scan, or a cloud of another program."""
 
     path: Path
+    unit: float = 1.0
+    """Length of the unit of a cloud of another program [m]."""
 
     def blocks(self) -> Iterator[PointCloud]:
         """Read its points."""
         if self.path.is_dir():
             return Project(self.path).iterate_cloud()
-        return iterate_cloud_file(self.path)
+        return (block.scaled(self.unit) for block in iterate_cloud_file(self.path))
 
     def as_record(self, out: Path) -> PassRecord:
         """Say what it is, for the merged folder.
@@ -70,7 +78,10 @@ class PassSource:
         path = _relative(self.path, out)
         if not self.path.is_dir():
             check_cloud_suffix(self.path)
-            return PassRecord(path, mark_file(self.path).blake2b)
+            identity = mark_file(self.path).blake2b
+            if self.unit != 1.0:
+                identity += f" in {self.unit:g} m"
+            return PassRecord(path, identity, scale=self.unit)
         project = Project(self.path)
         stages, carries_mount = [project.finished(CLOUD).record], False
         with suppress(MissingResult):

@@ -342,3 +342,5 @@ class PassRecord:
     """What was scanned, with what; None for a cloud of another program."""
     carries_mount: bool = False
     """Whether its poses came through its rig's mount."""
+    scale: float = field(default=1.0, metadata={"unit": "m"})
+    """Length of the unit of a cloud of another program [m]."""

@@ -44,7 +44,7 @@ def load_reference(path: Path, *, unit: str = "m") -> Reference:
 
     Args:
         path: A .ply, .stl, .obj or .glb file, or a scan's folder.
-        unit: Unit of the file: m, cm, mm or in.
+        unit: Unit of the file: m, cm, mm, in or ft.
 
     Raises:
         InputError: The unit is unknown, or given for a scan; or the file is of another format.

@@ -44,6 +44,7 @@ def merge_passes(
     align: bool = True,
     reach: float | None = None,
     voxel: float | None = None,
+    unit: float = 1.0,
     command: Sequence[str] = (),
     progress: Progress = silent,
 ) -> CloudResult:
@@ -57,6 +58,7 @@ def merge_passes(
         align: Whether to correct where the passes lie; otherwise they stay as logged.
         reach: Distance up to which surfaces are looked for in each other's place [m].
         voxel: Edge of the voxels to thin the result to [m]; None keeps all points.
+        unit: Length of the unit of clouds of other programs [m]; scans are in metres.
         command: The words that were typed after `murkscan`, for the record.
         progress: Told how many passes are aligned.
 
@@ -70,7 +72,7 @@ def merge_passes(
         DeviceError: The disk is full.
     """
     project = Project(out, tuple(command))
-    sources = [PassSource(path) for path in expand_merged(paths)]
+    sources = list(expand_merged(paths, unit=unit))
     _check_out(project, sources)
     records = [source.as_record(out) for source in sources]
     stage = project.stage(
@@ -276,7 +278,7 @@ def _align(one: NumberedPass, placed: PointCloud, reach: float | None) -> Alignm
         raise NotEnoughData(
             f"{one.source.path} cannot be laid on the passes before it: it measures "
             f"{_size(source):.3g} m, and they {_size(placed):.3g} m. Give clouds of surfaces in "
-            f"metres. ({error})"
+            f"metres, or their unit with --unit. ({error})"
         ) from error
 
 

@@ -56,6 +56,17 @@ class PointCloud(Table):
         measured = (self.sigma >= 0) & (self.sigma_common >= 0)
         return placed & measured & np.isfinite(self.normals).all(axis=1)
 
+    def scaled(self, unit: float) -> "PointCloud":
+        """Give in metres what is in a unit of this length [m]: places and their deviations."""
+        if unit == 1.0:
+            return self
+        return replace(
+            self,
+            points=unit * self.points,
+            sigma=np.float32(unit) * self.sigma,
+            sigma_common=np.float32(unit) * self.sigma_common,
+        )
+
     def carry(self, target_from_world: Pose) -> "PointCloud":
         """Lay the points elsewhere."""
         normals = (self.normals @ target_from_world.rotation.T).astype(np.float32)
