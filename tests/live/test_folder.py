@@ -70,6 +70,16 @@ def test_a_new_dive_begins_with_an_empty_preview_and_leaves_other_files(folder):
     assert {file.name for file in folder.root.rglob("*") if file.is_file()} == {"notes.txt"}
 
 
+def test_what_the_map_is_drawn_up_from_comes_back(folder):
+    assert folder.load_cells() is None
+    folder.save_cells({"along": np.array([3, 4]), "covered_m2": np.array([0.5, 0.25])})
+    found = folder.load_cells()
+    assert found["along"].tolist() == [3, 4]
+    assert found["covered_m2"].tolist() == [0.5, 0.25]
+    folder.clear()
+    assert folder.load_cells() is None
+
+
 def test_a_damaged_map_is_told_by_its_name(folder):
     folder.save_gaps(gap_map(np.zeros((1, 1))))
     (folder.root / "gaps.json").write_text('{"shape": [1, 1]}')

@@ -17,6 +17,7 @@ from murkscan.live import (
     gauge_stripe,
     gauge_water,
     speed_of,
+    warn_of_disk,
 )
 from murkscan.types.background import Attenuation
 from murkscan.types.frame import Frame
@@ -98,6 +99,14 @@ def test_the_disk_is_low_before_it_is_full():
     assert gauge_disk(int(1e9), 0, 0.0).state == "low"
     assert gauge_disk(int(1e8), 0, 0.0).state == "full"
     assert gauge_disk(int(50e9), int(1e6), 1.0).time_left == pytest.approx(50_000)
+
+
+def test_a_disk_that_is_nearly_full_is_told_in_one_sentence():
+    assert warn_of_disk(gauge_disk(int(50e9), int(1e6), 1.0)) == ()
+    (low,) = warn_of_disk(gauge_disk(int(1.2e9), int(5e6), 1.0))
+    assert "nearly full: 1.2 GB left, enough for 4 min" in low
+    (full,) = warn_of_disk(gauge_disk(int(5e7), int(5e6), 1.0))
+    assert "full (50 MB left)" in full
 
 
 def test_recent_looks_forget_what_is_old_and_count_what_was_dropped():

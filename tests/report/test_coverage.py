@@ -6,6 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from murkscan.report import (
     CAUSES,
+    CellSums,
     GrowingCoverage,
     Reach,
     SurfaceDirections,
@@ -218,6 +219,24 @@ def test_a_map_that_grows_is_that_of_the_whole_scan():
     whole, found = _cover(profile), growing.as_map()
     np.testing.assert_allclose(found.total, whole.total, rtol=1e-9)
     assert found.points.sum() == whole.points.sum()
+
+
+def test_a_map_goes_on_where_an_earlier_run_ended():
+    trajectory, read = _trajectory(), np.arange(FRAMES)
+    directions = SurfaceDirections.from_trajectory(trajectory, "y")
+    frames = FrameTimes(read.astype(np.uint32), read * 0.04)
+    layout = SwathLayout(frames, trajectory, "y", (LINES, LINES), 1, directions)
+    profile = _scan()
+    first, later = (GrowingCoverage(wanted=PITCH, cell=0.005, most=10**6) for _ in range(2))
+    first.add([profile[profile.frame < 120]], layout, BRIGHT)
+    first.as_map()
+    sums, cell = first.sums
+    columns = sums.as_columns()
+    later.go_on(CellSums.from_columns(columns), cell)
+    later.add([profile[profile.frame >= 119]], layout, BRIGHT)
+    found = later.as_map()
+    assert found.covered == pytest.approx(WHOLE, rel=1e-9)
+    assert not any(found.missing.values())
 
 
 def test_a_map_that_grows_too_large_is_coarsened_and_loses_no_area():

@@ -1,5 +1,6 @@
 """A dive is recorded whole, shown while it goes on, and scanned when it is over."""
 
+import shutil
 import threading
 import time
 from dataclasses import replace
@@ -7,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from murkscan.capture import DiveFolder, open_recording, record_images
+from murkscan.capture import DiveFolder, DiveRecord, open_recording, record_images
 from murkscan.distribute import Threads
 from murkscan.errors import DeviceError, InputError
 from murkscan.extract import AbstractExtractor, GrayGravity
@@ -112,6 +113,30 @@ def test_the_same_command_again_only_sees_that_all_is_done(replayed, recording):
     assert (project.root / "report" / "report.json").stat().st_mtime_ns == before
     with pytest.raises(InputError, match=r"recording\.mkv.*another folder"):
         run_live("udp://127.0.0.1:9", stream_rig(), _settings(), out=project.root)
+
+
+def test_a_dive_that_was_killed_goes_on_with_its_points_and_its_map(tmp_path, replayed):
+    _, _, earlier = replayed
+    live = LiveFolder(tmp_path / "live")
+    shutil.copytree(earlier.root, live.root)
+    port, before = free_port(), earlier.load_status()
+    source, sender, told = f"udp://127.0.0.1:{port}", Sender(port), []
+    DiveFolder(tmp_path / "capture").save(DiveRecord(source, time.time() - 100.0))
+
+    def is_over():
+        return bool(told) and told[-1].preview.frames > 50
+
+    with pytest.raises(Scanned):
+        run_live(
+            source, stream_rig(), _settings(move=_no_scan, timeout=20.0),
+            out=tmp_path, tell=told.append, until=is_over,
+        )  # fmt: skip
+    sender.stop()
+    after = live.load_status()
+    assert after.points.parts > before.points.parts
+    assert after.coverage.covered > before.coverage.covered
+    assert DiveFolder(tmp_path / "capture").chapters
+    assert after.recorded.time > 100.0
 
 
 class Dreadful(AbstractExtractor):

@@ -10,6 +10,7 @@ from .gauges import gauge_speed as gauge_speed
 from .gauges import gauge_stand_off as gauge_stand_off
 from .gauges import gauge_stripe as gauge_stripe
 from .gauges import gauge_water as gauge_water
+from .gauges import warn_of_disk as warn_of_disk
 from .mailbox import Mailbox as Mailbox
 from .recent import RecentLooks as RecentLooks
 from .recent import speed_of as speed_of

@@ -6,6 +6,7 @@ picture.jpg           the newest picture as it came, at most 960 px wide
 stripe.jpg            the newest picture in which the stripe was looked for, with its centres
 points/000000.parquet a part of the preview about every second, never changed afterwards:
                       x_m, y_m, z_m (world frame), signal float32, frame uint32
+cells.parquet         the sums that the map is drawn up from, for a later run of the same dive
 gaps.png, gaps.json   the map of gaps: a cell a pixel, row 0 the smallest place across, column 0 the
                       smallest along; 255 nothing known, 0 covered, k missing by causes[k - 1]
 ====================  =============================================================================
@@ -13,6 +14,7 @@ gaps.png, gaps.json   the map of gaps: a cell a pixel, row 0 the smallest place 
 Every file appears whole. They are a preview and no part of the scan.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -140,9 +142,32 @@ class LiveFolder:
                 f"{file} is damaged: it lacks {error}; run `murkscan live` again."
             ) from error
 
+    def save_cells(self, columns: Mapping[str, np.ndarray]) -> None:
+        """Write what the map is drawn up from."""
+        save_columns(self.root / "cells.parquet", columns)
+
+    def load_cells(self) -> Mapping[str, np.ndarray] | None:
+        """Read it; None where there is nothing yet.
+
+        Raises:
+            FormatError: It is damaged.
+        """
+        file = self.root / "cells.parquet"
+        if not file.exists():
+            return None
+        columns = load_columns(file)
+        return {name: columns[name] for name in columns}
+
     def clear(self) -> None:
         """Take away what an earlier dive left here; files of others stay."""
-        names = ("status.json", "picture.jpg", "stripe.jpg", "gaps.png", "gaps.json")
+        names = (
+            "status.json",
+            "picture.jpg",
+            "stripe.jpg",
+            "gaps.png",
+            "gaps.json",
+            "cells.parquet",
+        )
         files = [self.root / name for name in names]
         for file in (*files, *map(self._part, self.find_points())):
             file.unlink(missing_ok=True)

@@ -174,5 +174,18 @@ def gauge_disk(free: int, written: int, seconds: float) -> Disk:
     return Disk(free, left, "low" if is_low else "good")
 
 
+def warn_of_disk(disk: Disk) -> tuple[str, ...]:
+    """Say in a sentence that room is short; nothing where it is not."""
+    if disk.free is None or disk.state == "good":
+        return ()
+    if disk.state == "full":
+        return (
+            f"The disk is full ({disk.free / 1e6:.0f} MB left): the preview halts so that the "
+            "recording goes on; make room now.",
+        )
+    left = "" if disk.time_left is None else f", enough for {disk.time_left / 60:.0f} min"
+    return (f"The disk is nearly full: {disk.free / 1e9:.1f} GB left{left}; make room.",)
+
+
 def _milli(value: float | None) -> float | None:
     return None if value is None else 1e3 * value

@@ -6,6 +6,7 @@ from .calibrated import read_steps as read_steps
 from .coverage import Coverage as Coverage
 from .coverage import GrowingCoverage as GrowingCoverage
 from .coverage import map_coverage as map_coverage
+from .coverage_cells import CellSums as CellSums
 from .directions import SurfaceDirections as SurfaceDirections
 from .even_sample import EvenSample as EvenSample
 from .gathering import measure_cloud as measure_cloud

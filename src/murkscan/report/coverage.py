@@ -141,6 +141,23 @@ class GrowingCoverage:
         """
         self._wanted, self._most, self._cell = wanted, most, cell
         self._sheet: _Sheet | None = None
+        self._earlier: list[CellSums] = []
+
+    def go_on(self, sums: CellSums, cell: float) -> None:
+        """Begin where an earlier run ended, before anything is added.
+
+        Args:
+            sums: Its `sums`.
+            cell: The edge of its cells [m].
+        """
+        self._earlier, self._cell = [sums], cell
+
+    @property
+    def sums(self) -> tuple[CellSums, float] | None:
+        """Give what was drawn up last, for `go_on`: the sums of the cells, and their edge [m]."""
+        if self._sheet is None or not self._sheet.sums:
+            return None
+        return self._sheet.sums[0], self._sheet.cell
 
     def add(self, profiles: Iterable[Profile], layout: SwathLayout, reach: Reach) -> None:
         """Add points of one laser that come after all that were added.
@@ -151,7 +168,8 @@ class GrowingCoverage:
             reach: How far the light went, as far as that is known.
         """
         if self._sheet is None:
-            self._sheet = _Sheet(layout, reach, HOLE * self._wanted, self._cell)
+            hole = HOLE * self._wanted
+            self._sheet = _Sheet(layout, reach, hole, self._cell, self._earlier)
         self._sheet.layout, self._sheet.reach = layout, reach
         for profile in profiles:
             self._sheet.add(profile)

@@ -1,6 +1,6 @@
 """Sums over the cells of a map whose size is not known beforehand."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +19,7 @@ _MOST = 1200
 LONGEST = 8192
 """The same of a map that grows; it is coarsened before it is longer."""
 _CLASSES = 1 + len(CAUSES)
+_NAMES = ("covered", *CAUSES)
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +46,18 @@ class CellSums:
         area = (strips.length * strips.width / np.maximum(counts, 1))[pieces]
         areas = np.bincount(flat, weights=area, minlength=len(keys) * _CLASSES)
         return cls(_as_cells(keys), points, areas.reshape(-1, _CLASSES))
+
+    def as_columns(self) -> dict[str, np.ndarray]:
+        """Give them as columns of a table."""
+        areas = {f"{name}_m2": layer for name, layer in zip(_NAMES, self.areas.T, strict=True)}
+        return {"along": self.cell[:, 0], "across": self.cell[:, 1], "points": self.points, **areas}
+
+    @classmethod
+    def from_columns(cls, columns: Mapping[str, np.ndarray]) -> "CellSums":
+        """Make them of what `as_columns` gave."""
+        cells = np.stack([columns["along"], columns["across"]], axis=1)
+        areas = np.stack([columns[f"{name}_m2"] for name in _NAMES], axis=1)
+        return cls(cells, columns["points"], areas)
 
     def coarser(self) -> "CellSums":
         """Count by cells of twice the edge; a cell may have several rows."""

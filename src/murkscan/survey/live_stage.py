@@ -9,7 +9,7 @@ import numpy as np
 
 from ..capture import DiveFolder
 from ..errors import MurkscanError
-from ..live import LiveFolder, LiveStatus
+from ..live import LiveFolder, LiveStatus, gauge_disk, warn_of_disk
 from ..live.gauges import FULL
 from ..live.status import ScanProgress, State
 from ..motion.following import AbstractFollower
@@ -137,12 +137,8 @@ class LiveStage:
 
     def _warn(self, free: int) -> list[str]:
         warnings = [text for text in (self._finder.failure, self._failure) if text]
-        if free < FULL:
-            warnings.append(
-                f"The disk is full ({free / 1e6:.0f} MB left): the preview halts so that the "
-                "recording goes on; make room now."
-            )
-        return warnings
+        recorded = self.pictures.recorded
+        return [*warnings, *warn_of_disk(gauge_disk(free, recorded.bytes, recorded.time))]
 
 
 class ScanTeller:

@@ -26,7 +26,15 @@ from ..live import (
 )
 from ..live.status import Covered, Disk, PointCount, Preview, Recorded, State
 from ..motion.following import AbstractFollower
-from ..report import CAUSES, Coverage, EvenSample, GrowingCoverage, Reach, SurfaceDirections
+from ..report import (
+    CAUSES,
+    CellSums,
+    Coverage,
+    EvenSample,
+    GrowingCoverage,
+    Reach,
+    SurfaceDirections,
+)
 from ..report.swath_layout import SwathLayout
 from ..types.background import Attenuation, Background
 from ..types.frame_times import FrameTimes
@@ -82,6 +90,7 @@ class LiveView:
         self._directions: SurfaceDirections | None = None
         self._early: list[tuple[Profile, Trajectory]] = []
         self._coverage = GrowingCoverage(wanted=spacing, cell=spacing, most=_CELLS)
+        self._go_on()
         self._speed: float | None = None
         self._covered, self._drawn, self._draw_next = Covered(), 0, 0.0
         there = folder.find_points()
@@ -189,6 +198,16 @@ class LiveView:
             self._signals.add(profile.signal)
             self._add_to_map(profile, way, noise)
 
+    def _go_on(self) -> None:
+        """Take up the map of an earlier run of the same dive."""
+        gaps, cells = self._folder.load_gaps(), self._folder.load_cells()
+        if gaps is None or cells is None or len(cells["edge_m"]) == 0:
+            return
+        self._coverage.go_on(CellSums.from_columns(cells), float(cells["edge_m"][0]))
+        # Of heights only differences count, so that either side is towards the scanner.
+        towards = np.cross(gaps.along, gaps.across)
+        self._directions = SurfaceDirections(gaps.along, gaps.across, towards)
+
     def _save_points(self, profile: Profile, way: Trajectory) -> None:
         world = way.transform(profile.points, profile.time)
         points = thin_points(profile, world, self._spacing)
@@ -226,9 +245,16 @@ class LiveView:
         if coverage is not None:
             gaps = _as_gaps(coverage)
             self._folder.save_gaps(gaps)
+            self._save_cells()
             self._covered = Covered(gaps.covered, gaps.missing, gaps.share)
         now = time.monotonic()
         self._draw_next = now + max(2.0, _BUSY * (now - began))
+
+    def _save_cells(self) -> None:
+        sums = self._coverage.sums
+        if sums is not None:
+            columns = sums[0].as_columns()
+            self._folder.save_cells(columns | {"edge_m": np.full(len(columns["along"]), sums[1])})
 
     def _reach(self, noise: float) -> Reach:
         return Reach.from_points(self._ranges.values(), self._signals.values(), noise=noise)
