@@ -15,8 +15,9 @@ from harness import Figure, skip, tell
 from studio_streams import SDP, Streams, make_recordings
 
 PORTS = {"boards": 42110, "lines": 42120, "dive": 42130}
-BOARDS, SQUARE, SPEED, RADIUS = 12, 30, 40, 60.0
-"""Photos a step; the board's squares [mm]; the camera's speed [mm/s]; the ball's radius [mm]."""
+BOARDS, SQUARE, SPEED, KNOWN, RADIUS = 12, 30, 40, 0.1, 60.0
+"""Photos a step; the board's squares [mm]; the camera's speed [mm/s], and how well it is known [%];
+the ball's radius [mm]."""
 NEAR, WITHIN = "0,0.3,0.58", 40
 """Where the ball is looked for [m], and how far around [mm]."""
 PATIENCE = 300_000
@@ -145,7 +146,10 @@ def _dive(page, streams: Streams) -> float:
     page.locator("input[name=source]").fill("dive.sdp")
     page.locator("select[name=rig]").select_option("rig.toml")
     page.get_by_label("Speed or step").fill(str(SPEED))
-    _typed(page, f"dive.sdp --rig rig.toml --out dive --spacing-mm 5 --speed-mm-s {SPEED}")
+    page.locator(".wet details summary").click()
+    page.get_by_label("How well that is known").fill(str(KNOWN))
+    said = f"--speed-mm-s {SPEED} --speed-sigma-percent {KNOWN}"
+    _typed(page, f"dive.sdp --rig rig.toml --out dive --spacing-mm 5 {said}")
     page.get_by_role("button", name="Record and scan live").click()
     page.locator(".badge", has_text="waiting").wait_for(timeout=PATIENCE)
     with streams.sending("dive", PORTS["dive"], once=True) as sender:
@@ -202,10 +206,11 @@ def _look_at_all(browser, address: str, pictures: Path | None) -> int:
 def _by_commands(made: Path) -> tuple[float, float]:
     """Do the same by commands, with the pictures that the streams were made of."""
     board = ("--board", "9x6", "--square-mm", str(SQUARE), "--rig", "rig.toml")
+    speed = ("--speed-mm-s", str(SPEED), "--speed-sigma-percent", str(KNOWN))
     for words in (
         ("calibrate", "camera", "boards/frames", *board),
         ("calibrate", "laser", "lines/frames", *board),
-        ("scan", "dive/frames", "--rig", "rig.toml", "--speed-mm-s", str(SPEED), "--out", "scan"),
+        ("scan", "dive/frames", "--rig", "rig.toml", *speed, "--out", "scan"),
         ("measure", "scan", "sphere", "--near-m", NEAR, "--within-mm", str(WITHIN)),
     ):
         subprocess.run([*MURKSCAN, *words], cwd=made, check=True, capture_output=True)

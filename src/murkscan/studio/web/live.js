@@ -48,6 +48,7 @@ export function livePage(page) {
     const isStale = Date.now() / 1e3 - status.updated_s > STALE;
     const isOver = ["done", "failed"].includes(status.state);
     keep(head, [status.state, status.message, isStale, Math.floor(status.recorded.time_s), status.scan], () => headOf(status, isStale && !isOver, name));
+    dials.classList.toggle("over", isOver);
     keep(alarms, [status.warnings, isStale], () => (isStale ? [] : warningsOf(status)));
     keep(dials, [status.stand_off, status.speed, status.stripe, status.coverage, status.water, status.preview, Math.floor(status.recorded.time_s), status.disk.state], () => gauges(status));
     const image = isPlain ? told.picture : told.stripe ?? told.picture;
