@@ -8,7 +8,8 @@ from urllib.parse import quote
 import httpx2
 import pytest
 
-from murkscan.studio import make_app
+from murkscan.errors import InputError
+from murkscan.studio import make_app, serve
 
 from .conftest import HERE, TOKEN
 
@@ -97,6 +98,21 @@ def test_an_upload_is_bounded_whether_its_length_is_said_or_not(folder, ask):
     unsaid = ask.put("api/upload/a.png", content=endless())
     assert unsaid.status_code == 400
     assert [path.name for path in folder.rglob("*a.png*")] == []
+
+
+def test_a_question_is_bounded_too(ask):
+    def endless():
+        for _ in range(100):
+            yield b" " * 10_000
+
+    assert ask.post("api/jobs", content=endless()).status_code == 400
+    assert ask.post("api/jobs", content=b"[" * 50_000).status_code == 400
+    assert ask.post("api/jobs", content=b" " * 70_000).status_code == 413
+
+
+def test_all_addresses_at_once_are_none(folder):
+    with pytest.raises(InputError, match="all addresses at once"):
+        serve(folder, host="0.0.0.0")
 
 
 def test_an_upload_is_kept_whole_and_replaces_nothing(folder, ask):

@@ -15,7 +15,7 @@ import anyio
 from anyio import to_thread
 from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
-from starlette.requests import Request
+from starlette.requests import ClientDisconnect, Request
 from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, Response
 from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
@@ -43,6 +43,10 @@ _SMALL = 2_000_000
 """Bytes up to which a file is read whole before it is sent."""
 _DIGITS = 9
 """Digits of a part's number, at most."""
+_BROKEN = (ValueError, RecursionError, ClientDisconnect)
+_OTHER = (KeyError, TypeError, AttributeError)
+"""What a question raises that cannot be read, or was cut off for its length; and one of another
+kind."""
 Answer = Callable[[Request], Awaitable[Response]]
 
 
@@ -192,7 +196,7 @@ class _Studio:
         try:
             asked = await request.json()
             name, values, page = asked["command"], dict(asked["values"]), str(asked.get("page", ""))
-        except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        except (*_BROKEN, *_OTHER) as error:
             raise InputError("That is no question of the studio's own page.") from error
         return make_command(self._sandbox, str(name), values, page=page[:40])
 

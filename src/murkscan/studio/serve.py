@@ -9,13 +9,15 @@ from pathlib import Path
 
 import uvicorn
 
-from ..errors import DeviceError
+from ..errors import DeviceError, InputError
 from ..project.lock import hold
 from .app import make_app
 from .jobs import Jobs
 from .sandbox import Sandbox
 
 _TOKEN_BYTES = 24
+_ALL = ("", "0.0.0.0", "::")
+"""Addresses that stand for all: under which of them a page was opened could not be checked."""
 
 
 def serve(
@@ -30,17 +32,23 @@ def serve(
         tell: Told the address to open, which carries the token, and at the end what goes on.
 
     Raises:
-        InputError: Another studio shows this folder, or it cannot be one.
+        InputError: Another studio shows this folder, it cannot be one, or the address is none.
         DeviceError: The port is taken, or the folder cannot be written.
     """
+    if host in _ALL:
+        raise InputError(
+            f"--host {host} means all addresses at once; give the one by which others reach this "
+            "machine, such as 192.168.2.1."
+        )
+    name = f"[{host}]" if ":" in host else host
     sandbox = Sandbox.open(folder)
     with hold(sandbox.own(), ("studio", str(folder))), ExitStack() as stack:
         before, token = _recall(sandbox.own("address"))
         listening = stack.enter_context(_listen_again(host, port, before))
         place = listening.getsockname()[1]
         _remember(sandbox.own("address"), place, token)
-        tell(f"http://{host}:{place}/{token}/")
-        app = make_app(folder, token, hosts=(host,))
+        tell(f"http://{name}:{place}/{token}/")
+        app = make_app(folder, token, hosts=(name,))
         config = uvicorn.Config(
             app, log_level="warning", server_header=False, timeout_graceful_shutdown=2,
             access_log=False, h11_max_incomplete_event_size=1 << 15,
