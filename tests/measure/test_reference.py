@@ -8,8 +8,10 @@ import pytest
 
 from murkscan import Degenerate, FormatError, InputError, Mesh, NotEnoughData, PointCloud
 from murkscan.io.mesh_files import save_mesh
-from murkscan.measure.reference import lay_on
+from murkscan.measure.reference import begin_at, lay_on
 from murkscan.survey.deviation import load_reference
+from murkscan.types.pose import Pose
+from murkscan.ui.values import read_pose
 
 
 def _blade(x, y):
@@ -94,3 +96,22 @@ def test_a_drawing_in_the_wrong_unit_is_refused_with_both_sizes_and_the_flag(tmp
         (Degenerate, NotEnoughData), match=r"blade\.ply .* the scan 1\.1\d m.*--unit"
     ):
         lay_on(load_reference(tmp_path / "blade.ply", unit=unit), _scan(np.zeros(3)))
+
+
+def test_a_drawing_that_lies_elsewhere_and_turned_is_given_a_start(drawing):
+    elsewhere = Pose.from_quaternion(np.array([[1.0, 0.0, 0.0, 1.0]]), np.array([6.0, 0.0, -2.0]))
+    reference = load_reference(drawing)
+    moved = begin_at(reference, elsewhere.inverse())
+    with pytest.raises(Degenerate, match="--start"):
+        lay_on(moved, _scan(np.zeros(3)))
+    about = read_pose("--start", "6.004,0.003,-2.003,1,0,0,1")
+    laid = lay_on(begin_at(moved, about), _scan(np.zeros(3)))
+    # The blade; the hull's three corners are 90 m away.
+    away = laid.mesh.vertices[:-3] - reference.mesh.vertices[:-3]
+    assert np.abs(away).max() < 1e-3
+
+
+@pytest.mark.parametrize("text", ["1,2", "1,2,3,0,0,0,0", "a,b,c", "1,2,3,4", "nan,0,0"])
+def test_a_start_that_is_none_is_refused(text):
+    with pytest.raises(InputError, match="QW"):
+        read_pose("--start", text)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
+from ..ui.values import read_pose
 from .measure_part import MeshScan, PartFlags, print_measurement
 from .typed import WORDS
 from .words import print_table, say, tell
@@ -25,6 +26,14 @@ AsGiven = Annotated[
         "scan by ICP.",
     ),
 ]
+Start = Annotated[
+    str | None,
+    Parameter(
+        allow_leading_hyphen=True,
+        help="Where the reference lies in the scan's world, about: its origin as X,Y,Z [m], or "
+        "X,Y,Z,QW,QX,QY,QZ with how it is turned.",
+    ),
+]
 FilesName = Annotated[
     str, Parameter(help="What to call it: OUT/measure/NAME.json, .ply, .csv, .png.")
 ]
@@ -36,6 +45,7 @@ def deviation(
     reference: Path,
     unit: Unit = "m",
     as_given: AsGiven = False,
+    start: Start = None,
     reach_mm: float = 50.0,
     part: PartFlags = PartFlags(),
     name: FilesName = "deviation",
@@ -58,7 +68,7 @@ def deviation(
     project = Project(out, WORDS.get())
     found = compare_scan(
         project,
-        _load(project, reference, unit, as_given),
+        _load(project, reference, unit, as_given, start),
         within=reach_mm / 1e3,
         name=name,
         selection=part.select(),
@@ -75,6 +85,7 @@ def dents(
     reference: Path | None = None,
     unit: Unit = "m",
     as_given: AsGiven = False,
+    start: Start = None,
     smallest_mm: float = 20.0,
     largest_mm: float = 150.0,
     least_depth_mm: float = 0.0,
@@ -102,7 +113,7 @@ def dents(
     project = Project(out, WORDS.get())
     search = search_dents(
         project,
-        None if reference is None else _load(project, reference, unit, as_given),
+        None if reference is None else _load(project, reference, unit, as_given, start),
         smallest=smallest_mm / 1e3,
         largest=largest_mm / 1e3,
         least_depth=least_depth_mm / 1e3,
@@ -114,11 +125,16 @@ def dents(
     tell("made", *(str(out / "measure" / f"{name}{ending}") for ending in endings))
 
 
-def _load(project: "Project", path: Path, unit: Unit, as_given: bool) -> "Reference":
-    from ..measure.reference import lay_on
+def _load(
+    project: "Project", path: Path, unit: Unit, as_given: bool, start: str | None
+) -> "Reference":
+    pose = None if start is None else read_pose("--start", start)
+    from ..measure.reference import begin_at, lay_on
     from ..survey.deviation import load_reference
 
     reference = load_reference(path, unit=unit)
+    if pose is not None:
+        reference = begin_at(reference, pose)
     return reference if as_given else lay_on(reference, project.load_cloud())
 
 

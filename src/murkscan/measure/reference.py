@@ -15,6 +15,7 @@ from ..io.mesh_files import load_mesh
 from ..types.arrays import Directions, Points, Scalars
 from ..types.cloud import PointCloud
 from ..types.mesh import Mesh
+from ..types.pose import Pose
 
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254, "ft": 0.3048}
 """Lengths of the units that meshes come in [m]."""
@@ -93,6 +94,12 @@ def _require_spread(mesh: Mesh, path: Path) -> None:
         )
 
 
+def begin_at(reference: Reference, scan_from_reference: Pose) -> Reference:
+    """Bring a reference nearly into place, from where `lay_on` finds the rest."""
+    moved = replace(reference.mesh, vertices=scan_from_reference @ reference.mesh.vertices)
+    return replace(reference, mesh=moved)
+
+
 def lay_on(reference: Reference, cloud: PointCloud) -> Reference:
     """Lay a reference on a scan by ICP, as far as their overlap shows how.
 
@@ -111,7 +118,7 @@ def lay_on(reference: Reference, cloud: PointCloud) -> Reference:
         raise type(error)(
             f"{reference.name} cannot be laid on the scan: it measures {sizes[0]:.3g} m and the "
             f"scan {sizes[1]:.3g} m. Check that it lies where the scan does and, of a file, its "
-            f"--unit. ({cause}.)"
+            f"--unit, or say about where it lies with --start. ({cause}.)"
         ) from error
     scan_from_reference = alignment.target_from_source.inverse()
     moved = replace(reference.mesh, vertices=scan_from_reference @ reference.mesh.vertices)

@@ -1,8 +1,12 @@
 """What users write as the value of a flag or a field, read."""
 
 import math
+from typing import TYPE_CHECKING
 
 from ..errors import InputError
+
+if TYPE_CHECKING:
+    from ..types.pose import Pose
 
 Corner = tuple[float, float, float]
 
@@ -30,6 +34,25 @@ def read_box(flag: str, text: str) -> tuple[Corner, Corner]:
     pairs = [sorted(pair) for pair in zip(numbers[:3], numbers[3:], strict=True)]
     (x, x_high), (y, y_high), (z, z_high) = pairs
     return (x, y, z), (x_high, y_high, z_high)
+
+
+def read_pose(flag: str, text: str) -> "Pose":
+    """Read a place [m], or a place and a quaternion wxyz of any length but 0.
+
+    Raises:
+        InputError: They are no such numbers.
+    """
+    import numpy as np
+
+    from ..types.pose import Pose
+
+    numbers = read_numbers(text, 3) or read_numbers(text, 7)
+    attitude = [1.0, 0.0, 0.0, 0.0] if numbers is None or len(numbers) == 3 else numbers[3:]
+    if numbers is None or not any(attitude):
+        raise InputError(
+            f"{flag} {text!r} is neither X,Y,Z in metres nor X,Y,Z,QW,QX,QY,QZ with a quaternion."
+        )
+    return Pose.from_quaternion(np.array([attitude]), np.array(numbers[:3]))
 
 
 def read_start_time(text: str) -> float:
