@@ -115,5 +115,5 @@ def test_the_form_that_ever_more_points_come_to_lies_within_its_interval(blur):
 
 
 def test_a_form_of_few_points_is_refused():
-    with pytest.raises(NotEnoughData, match="shows 999 points"):
-        measure_form("form", np.ones(999), np.arange(999), np.arange(999))
+    with pytest.raises(NotEnoughData, match="shows 666 points"):
+        measure_form("form", np.ones(666), np.arange(666), np.arange(666))

@@ -189,6 +189,22 @@ def test_an_error_of_a_pass_s_poses_that_alignment_sees_is_answered(tmp_path):
     assert np.abs(after).max() < 2e-6
 
 
+def test_points_that_turn_from_camera_or_light_do_not_tell_where_a_pass_lies(tmp_path):
+    source = PassSource(scanned(tmp_path / "a", RIG, spacing=2e-3, back=False))
+    (one,) = number_passes([look_at(source, source.as_record(tmp_path / "out"))])
+    errors, cloud = MergedErrors.of_passes([one.see(Pose.identity()), None]), one.sample()
+    count = len(cloud)
+    assert errors.is_facing(np.zeros(count, int), cloud).all()
+    # Turned by 70 degrees from the view along z, to the sides: across the light and along it.
+    aside, down = np.sin(np.radians(70)), np.cos(np.radians(70))
+    for normal in ((0.0, aside, -down), (aside, 0.0, -down), (-aside, 0.0, -down)):
+        turned = replace(cloud, normals=np.tile(np.array(normal, np.float32), (count, 1)))
+        facing = errors.is_facing(np.zeros(count, int), turned)
+        assert facing.mean() < 0.02
+        # Nothing is known of how the other pass was seen.
+        assert errors.is_facing(np.ones(count, int), turned).all()
+
+
 def test_a_pass_goes_along_with_the_error_of_the_log_that_it_is_laid_on(tmp_path):
     passes = [
         scanned(tmp_path / "a", RIG, spacing=2e-3, back=False, is_adrift=True),

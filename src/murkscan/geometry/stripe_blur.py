@@ -61,13 +61,14 @@ def blur_slopes(shape: AnyShape, points: Points, sight: Sight) -> Scalars:
 def is_readable(shape: AnyShape, points: Points, sight: Sight) -> Mask:
     """Tell which points do not lie where a curved surface turns from the camera or the light."""
     bent = np.abs(shape.curvature(sight.along)) > 0
-    normals = shape.normals(points)
-    turned = [
-        np.abs(np.einsum("ij,ij->i", normals, way)) <= _LEAST_FACING
-        for way in (sight.rays, sight.light)
-        if way is not None
-    ]
-    return ~bent | ~np.any(turned, axis=0)
+    return ~bent | is_facing(shape.normals(points), sight)
+
+
+def is_facing(normals: Directions, sight: Sight) -> Mask:
+    """Tell which points do not turn from the camera or the light by 60 degrees or more."""
+    ways = [way for way in (sight.rays, sight.light) if way is not None]
+    facing = [np.abs(np.einsum("ij,ij->i", normals, way)) > _LEAST_FACING for way in ways]
+    return np.asarray(np.all(facing, axis=0))
 
 
 def _lean(shape: AnyShape, points: Points, sight: Sight) -> Scalars:

@@ -20,13 +20,13 @@ _TAIL = LEFT_OUT / 2
 _PEAKS = 9.0
 """Peaks that lie beyond an end for each patch's worth of points there: three standard deviations
 up, patches of Gaussian errors are that much narrower."""
-_FEW = 5.0
+_FEW = 10.0
 """Degrees of freedom at least: that few points lie beyond is in the deviation already."""
-_SKEWED = 0.25
+_SKEWED = 0.1
 """Share of that deviation's square that few independent points beyond an end add to it: an end told
 by one or two is too near rather than too far."""
-_FEWEST = 1000
-"""Points below which that share is less than two points at either end."""
+_FEWEST = 667
+"""Points below which that share is less than one point at either end."""
 
 
 def measure_form(name: str, residuals: Scalars, profile: Indices, line: Indices) -> Quantity:
@@ -43,7 +43,7 @@ def measure_form(name: str, residuals: Scalars, profile: Indices, line: Indices)
         line: Number of each point's scan line.
 
     Raises:
-        NotEnoughData: Fewer than a thousand points.
+        NotEnoughData: Fewer than 667 points.
 
     References:
         Adler, The Geometry of Random Fields, 1981, section 6.9 (peaks above a level u of u² as many
@@ -69,7 +69,8 @@ def _find_end(
     Of an exponential tail, ten times as many points lie beyond a place that is nearer by 2.3 times
     its length.
     """
-    nearer, end = np.quantile(values, [1 - 10 * _TAIL, 1 - _TAIL])
+    shares = [1 - 10 * _TAIL, 1 - _TAIL]
+    nearer, end = np.quantile(values, shares, method="median_unbiased")
     length = float(end - nearer) / math.log(10)
     beyond = (values > end).astype(float)
     share = float(beyond.mean())
@@ -89,7 +90,7 @@ def measure_flatness(sample: Sample) -> Quantity:
     """Give how far points scatter about their plane [m]; see `measure_form`.
 
     Raises:
-        NotEnoughData: Fewer than a thousand points, or three profiles.
+        NotEnoughData: Fewer than 667 points, or three profiles.
         Degenerate: The points lie on one line.
     """
     if len(sample) < _FEWEST:

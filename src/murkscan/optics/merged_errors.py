@@ -15,8 +15,8 @@ import numpy as np
 from jaxtyping import Float
 from scipy.linalg import block_diag
 
-from ..geometry.stripe_blur import Sight
-from ..types.arrays import Indices, Vector
+from ..geometry.stripe_blur import Sight, is_facing
+from ..types.arrays import Indices, Mask, Vector
 from ..types.cloud import PointCloud
 from ..types.rig import Rig
 from ..types.rig_covariance import RigCovariance
@@ -109,6 +109,19 @@ class MergedErrors:
             seen = look_back(some.points, some.laser, times, one.trajectory, one.rig)
             columns[:, mine] = seen.rays, seen.along, seen.light
         return Sight(*columns)
+
+    def is_facing(self, owner: Indices, cloud: PointCloud) -> Mask:
+        """Tell which points turn neither from their camera nor from their light; see `is_facing`.
+
+        Of a pass that does not know from where it was seen all count.
+        """
+        facing = np.ones(len(cloud), bool)
+        for number in np.unique(owner).tolist():
+            mine = owner == number
+            sight = self.look_back(owner[mine], cloud[mine])
+            if sight is not None:
+                facing[mine] = is_facing(cloud.normals[mine].astype(float), sight)
+        return facing
 
     def place(self, number: int, seen: SeenPass | None) -> "MergedErrors":
         """Say where a pass lies, of which only its own world was known."""

@@ -2,7 +2,9 @@
 
 import platform
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
+from functools import cached_property
 from importlib.metadata import version
 from itertools import chain
 from pathlib import Path
@@ -28,7 +30,7 @@ from ..project import (
     is_merged,
 )
 from ..project.passes import NumberedPass, PassSource, expand_merged, look_at, number_passes
-from ..types.arrays import Indices
+from ..types.arrays import Indices, Mask
 from ..types.cloud import PointCloud
 from ..types.cloud_part import CloudPart
 from ..types.pose import Pose
@@ -178,6 +180,11 @@ class _Placed:
     laid: Mapping[int, _Laid]
     """How each of the passes was laid."""
 
+    @cached_property
+    def facing(self) -> Mask:
+        """Which of its points turn neither from their camera nor from their light."""
+        return self.errors.is_facing(self.owner, self.cloud)
+
     @classmethod
     def begin(cls, passes: Sequence[NumberedPass]) -> "_Placed":
         """Leave the first pass where it is."""
@@ -257,7 +264,7 @@ def _align_all(
         refusal: Degenerate | None = None
         for number in waiting:
             try:
-                alignment = _align(passes[number], placed.cloud, reach)
+                alignment = _align(passes[number], number, placed, reach)
             except Degenerate as error:
                 refusal = error
                 continue
@@ -270,15 +277,24 @@ def _align_all(
     return [placed.laid[number] for number in range(len(passes))]
 
 
-def _align(one: NumberedPass, placed: PointCloud, reach: float | None) -> Alignment:
+def _align(one: NumberedPass, number: int, placed: _Placed, reach: float | None) -> Alignment:
+    """Lay a pass on what is in place, by what faced the camera in both, where that tells all.
+
+    Where a curved surface turns away, each pass errs to the side from which it looked.
+    """
     source = one.sample()
+    facing = placed.errors.is_facing(np.full(len(source), number), source)
     try:
-        return align_clouds(source, placed, reach=reach)
+        with suppress(Degenerate, NotEnoughData):
+            found = align_clouds(source[facing], placed.cloud[placed.facing], reach=reach)
+            if not found.open_directions:
+                return found
+        return align_clouds(source, placed.cloud, reach=reach)
     except NotEnoughData as error:
         raise NotEnoughData(
             f"{one.source.path} cannot be laid on the passes before it: it measures "
-            f"{_size(source):.3g} m, and they {_size(placed):.3g} m. Give clouds of surfaces in "
-            f"metres, or their unit with --unit. ({error})"
+            f"{_size(source):.3g} m, and they {_size(placed.cloud):.3g} m. Give clouds of surfaces "
+            f"in metres, or their unit with --unit. ({error})"
         ) from error
 
 
