@@ -88,6 +88,7 @@ function input({ key, kind = "text", value = "", options = [], step = "any", min
 export function fill(select, options, value) {
   const pairs = options.map((option) => (Array.isArray(option) ? option : [option, option]));
   const before = value ?? select.value;
+  if (!pairs.length) pairs.push(["", "none in this folder yet"]);
   select.replaceChildren(...pairs.map(([key, text]) => make("option", { value: key, textContent: text })));
   if (pairs.some(([key]) => key === before)) select.value = before;
   return select;

@@ -2,7 +2,7 @@
 
 import { addressOf, ask, listen, order, question, refresh } from "./ask.js";
 import { button, keep, make, note, table } from "./dom.js";
-import { commandForm, fill } from "./form.js";
+import { commandForm, fill, uploader } from "./form.js";
 import { measureForms } from "./measures.js";
 import { motionFields, motionOf, showMotion } from "./motion.js";
 
@@ -57,6 +57,7 @@ export function lookPage(page, [named]) {
   const stop = listen((state) => {
     const { scans } = state.found;
     none.hidden = scans.length > 0;
+    chosen.closest("div").hidden = scans.length === 0;
     fresh.sync(state);
     merged.sync(state);
     const key = JSON.stringify([scans, state.jobs.map((job) => [job.name, job.state, job.progress?.[0]])]);
@@ -149,7 +150,8 @@ function scanForm() {
   showMotion(form, "speed-mm-s");
   let last = "";
   return {
-    element: make("section", { className: "card" }, make("h2", { textContent: "A new scan" }), form),
+    element: make("section", { className: "card" }, make("h2", { textContent: "A new scan" }), form,
+      uploader({ label: "Bring a recording, a log or a drawing", accept: ".mkv,.mp4,.mov,.avi,.ts,.mcap,.bag,.tlog,.csv,.txt,.stl,.obj,.ply,.glb", nameOf: (file) => file.name })),
     sync(state) {
       const { recordings, rigs, logs } = state.found;
       if (JSON.stringify([recordings, rigs, logs]) === last) return;

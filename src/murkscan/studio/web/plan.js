@@ -86,13 +86,15 @@ export function planPage(page) {
       }));
   }
 
+  let last = "";
   return listen((state) => {
     none.hidden = state.found.rigs.length > 0;
     keep(plan, state.jobs.filter((job) => job.page === "plan" && job.state === "done").slice(0, 1).map((job) => job.text), () => {
       const job = state.jobs.find((one) => one.page === "plan" && one.state === "done");
       return job ? make("span", { textContent: "Written: open index.html in its folder." }) : null;
     });
-    if (JSON.stringify([...rig.options].map((o) => o.value)) === JSON.stringify(state.found.rigs)) return;
+    if (JSON.stringify(state.found.rigs) === last) return;
+    last = JSON.stringify(state.found.rigs);
     fill(rig, state.found.rigs);
     changed();
   });

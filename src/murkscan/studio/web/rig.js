@@ -24,6 +24,7 @@ export function rigPage(page) {
   let last = "";
   async function load() {
     const name = chosen.value;
+    cards.hidden = !name;
     if (!name) return;
     try {
       const rig = await ask(question("api/rig", { name }));
