@@ -151,7 +151,8 @@ def learn_stays(
         np.add.at(asked, _bins(one, other), 1.0 - chance)
     # A stripe too faint to be told stays as well, but in some bands of the picture alone.
     share = (np.maximum(staying, 0.0) + _FEW * _STAYS) / (asked + _FEW)
-    return np.clip(np.median(share, axis=0), _STAYS, 1.0)
+    stays = np.clip(np.median(share, axis=0), _STAYS, 1.0)
+    return np.where(_HEIGHTS < _HIGH, stays, _STAYS)
 
 
 def _followed(

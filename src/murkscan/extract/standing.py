@@ -22,6 +22,9 @@ _STIR = 0.3
 """Standard deviation of the place from which it moves [px]; noise adds a grain by the score."""
 _CLEARLY = 6.0
 """Logarithm of the ratio from which what stands is fixed to the picture."""
+_SURELY = 100.0
+"""Logarithm by which another line of the same scan lines is more of a surface, so that this is
+none: fifty lines that flicker as paint does. Between shorter ones is an edge with two surfaces."""
 _NEAR_LINES, _FAR_LINES, _SLOPE = 8, 150, 1.0
 """Scan lines on both sides whose evidence is put together, those that decide together, and the
 steepest slope of a thing [px a line]."""
@@ -43,9 +46,6 @@ _FLICKER, _MOST_FLICKER = 0.1, 0.5
 passes by: speckle and paint of painted, grown-over or bare walls vary by 0.2 to 0.5, dirt on the
 window by 0.05 at most (measured on the cases of benchmarks/murk.py with fixed clutter); and the
 most that one ridge counts with: a particle before it, or a digit that changes, is more."""
-_UNSURE = 0.3
-"""Share to which the variance of a ridge's height that noise explains is known: a ridge is a
-maximum, and faint ones are seen only where noise adds to them."""
 _LONE = 1.2
 """Standing ridges a scan line and laser up to which a steady line is the laser's own: a still
 stripe on an even wall, if nothing else in the picture is dirt."""
@@ -116,11 +116,13 @@ class Standing:
             steady = np.minimum(steady, 0.0)
         pooled = self.pool(told + steady, _FAR_LINES)
         if lasers == 1:
-            pooled += self.pool(_BOTH * self._are_beside_surface(pooled), _FAR_LINES)
+            beside = self.pool(self._are_beside_surface(pooled).astype(float), _FAR_LINES)
+            most = beside > 0.5 * self.pool(self.stand.astype(float), _FAR_LINES)
+            pooled += np.where(most, _BOTH * beside, 0.0)
         return self.stand & (pooled < _CLEARLY)
 
     def _are_beside_surface(self, pooled: Float[np.ndarray, "lines most"]) -> Marks:
-        """Tell which stand beside what is clearly a surface, and more so: of two one is the stripe.
+        """Tell which stand beside what is surely a surface, and more so: of two one is the stripe.
 
         Args:
             pooled: Logarithm of the ratio of being fixed to the picture.
@@ -129,7 +131,7 @@ class Standing:
         place = np.where(self.stand, self.ridges.positions, np.inf)
         with np.errstate(invalid="ignore"):
             apart = np.abs(place[:, :, None] - place[:, None, :]) > self.ridges.reach
-            lower = value[:, None, :] < np.minimum(value[:, :, None], 0.0) - _CLEARLY
+            lower = value[:, None, :] < np.minimum(value[:, :, None], 0.0) - _SURELY
         return self.stand & (apart & lower).any(axis=2)
 
     def are_crowded(self) -> Marks:
@@ -161,7 +163,7 @@ class Standing:
             for each in (np.ones_like(square), excess, square)
         )
         count, square = np.maximum(count, 1.0), np.maximum(square, 1.0)
-        doubt = 2.0 * np.sqrt(2.0 * count / len(self.frames)) + _UNSURE * count
+        doubt = 2.0 * np.sqrt(2.0 * count / len(self.frames))
         flicker, most = (np.sqrt(each / square) for each in (excess, excess + doubt))
         # Noise alone scatters faint ones: they may flicker or not.
         flicker = np.where(flicker < _FLICKER, np.clip(most, _FLICKER / 10, _FLICKER), flicker)
