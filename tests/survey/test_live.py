@@ -202,6 +202,13 @@ def test_a_stream_that_never_comes_leaves_one_sentence(tmp_path):
     assert Project(tmp_path / "dive").check_writable() is None
 
 
+def test_a_source_that_is_none_is_refused_before_anything_is_made(tmp_path):
+    for source in ("nothing.mkv", str(tmp_path / "missing.sdp")):
+        with pytest.raises(InputError, match=r"nothing\.mkv is no|no SDP file .*missing"):
+            run_live(source, stream_rig(), _settings(), out=tmp_path / "dive")
+    assert not (tmp_path / "dive").exists()
+
+
 def test_a_folder_of_other_things_is_refused(tmp_path):
     (tmp_path / "thesis.tex").write_text("mine")
     with pytest.raises(InputError, match="other files"):

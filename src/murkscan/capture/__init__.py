@@ -18,6 +18,7 @@ from .growing import RecordingProgress as RecordingProgress
 from .long_recording import DiveFolder as DiveFolder
 from .long_recording import DiveProgress as DiveProgress
 from .long_recording import DiveRecord as DiveRecord
+from .long_recording import check_source as check_source
 from .long_recording import record_dive as record_dive
 from .open import open_recording as open_recording
 from .record import record_images as record_images

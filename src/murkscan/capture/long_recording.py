@@ -16,7 +16,7 @@ from .camera import camera_images, is_camera
 from .coded import Tap, tell_nobody
 from .growing import RecordingProgress
 from .record import record_images
-from .stream import copy_stream, is_stream
+from .stream import check_description, copy_stream, is_stream
 
 _PAUSE = 0.5
 """Pause before a lost stream is asked for again [s]: one that refuses does so at once."""
@@ -132,7 +132,7 @@ def record_dive(
         StreamLost: Nothing has come at all.
         DeviceError: The disk is full; what came is kept.
     """
-    _check(source)
+    check_source(source)
     folder.adopt()
     losses, lost_since = 0, clock()
     has_begun = folder.record is not None
@@ -162,7 +162,13 @@ def record_dive(
         time.sleep(_PAUSE)
 
 
-def _check(source: str) -> None:
+def check_source(source: str) -> None:
+    """Refuse what is neither a stream nor a camera.
+
+    Raises:
+        InputError: It is neither, or an SDP file that is not there.
+    """
+    check_description(source)
     if not is_stream(source) and not is_camera(source):
         raise InputError(
             f"{source} is no stream, no camera, and no file that is there; give an address such as "

@@ -58,8 +58,7 @@ def copy_stream(
         StreamLost: No stream comes, or it stops; what came is kept.
         DeviceError: The disk is full; what came is kept.
     """
-    if "://" not in source and not Path(source).exists():
-        raise InputError(f"There is no SDP file {source}; save the one that the camera offers.")
+    check_description(source)
     with growing_video(out) as container, closing(_open(source, timeout)) as stream:
         video = stream.streams.video[0]
         target = container.add_stream_from_template(video)
@@ -75,6 +74,16 @@ def copy_stream(
             frames, size, last = frames + 1, size + packet.size, packet.pts
             container.mux(packet)
             yield RecordingProgress(frames, last / TICKS, size)
+
+
+def check_description(source: str) -> None:
+    """Refuse an SDP file that is not there.
+
+    Raises:
+        InputError: It is not.
+    """
+    if is_stream(source) and "://" not in source and not Path(source).exists():
+        raise InputError(f"There is no SDP file {source}; save the one that the camera offers.")
 
 
 def _open(source: str, timeout: float) -> Any:

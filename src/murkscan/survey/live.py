@@ -10,6 +10,9 @@ from ..capture import (
     AbstractRecording,
     DiveFolder,
     DiveRecord,
+    check_source,
+    is_camera,
+    is_stream,
     open_recording,
 )
 from ..capture.field_order import Fields
@@ -67,9 +70,9 @@ def run_live(
     project, dive = Project(out, tuple(command)), DiveFolder(out / "capture")
     rig.laser(settings.laser)
     project.check_writable()
+    recording = _open(source, rig, settings.fields)
     with project.hold():
         show = LiveFolder(out / "live")
-        recording = _open(source, rig, settings.fields)
         record = dive.record
         if record is not None and record.source != source:
             raise InputError(
@@ -90,12 +93,8 @@ def run_live(
 def _open(source: str, rig: Rig, fields: Fields) -> AbstractRecording | None:
     """Open a recording that shall be replayed; None for a stream or a camera."""
     path = Path(source)
-    if (
-        "://" in source
-        or path.suffix.lower() == ".sdp"
-        or not path.exists()
-        or path.is_char_device()
-    ):
+    if is_stream(source) or is_camera(source) or not path.exists():
+        check_source(source)
         return None
     recording = open_recording(path, wavelength=rig.wavelength, fields=fields)
     if not recording.is_timed:
