@@ -63,6 +63,9 @@ def test_a_missing_ball_and_one_of_another_size_are_refused_with_what_to_do():
     sample = Sample.from_cloud(bar())
     with pytest.raises(NotEnoughData, match=r"no ball of 100 mm lies near 9,9,9 m.*near_m"):
         find_ball(sample, np.array([9.0, 9.0, 9.0]), RADIUS)
+    wall = Sample.from_cloud(scans.scan_cloud(scans.plane, spacing=4e-3))
+    with pytest.raises(NotEnoughData, match=r"no ball of 100 mm lies near"):
+        find_ball(wall, NEAR, RADIUS)
     with pytest.raises(NotEnoughData, match=r"has a diameter of 100\.0 mm and not of 140 mm"):
         find_ball(sample, NEAR, 0.07)
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import ConvexHull, KDTree
 
-from ..errors import NotEnoughData
+from ..errors import EstimationError, NotEnoughData
 from ..geometry.shape_fit import ShapeFit
 from ..geometry.sphere_fit import fit_sphere
 from ..geometry.stripe_blur import is_readable
@@ -97,7 +97,10 @@ def find_ball(sample: Sample, near: Vector, radius: float) -> FoundBall:
     around = sample[np.linalg.norm(sample.cloud.points - near, axis=1) <= 2 * radius]
     centre = _vote_for_centre(around, near, radius)
     start = around[_off(around.cloud.points, centre, radius) < _START * radius]
-    sphere = fit_sphere(start.cloud.points, sight=start.sight).shape
+    try:
+        sphere = fit_sphere(start.cloud.points, sight=start.sight).shape
+    except EstimationError as error:
+        raise NotEnoughData(_no_ball(around, near, radius)) from error
     if abs(sphere.radius - radius) > _ALIKE * radius:
         raise NotEnoughData(
             f"what lies near {_place(near)} m has a diameter of {2e3 * sphere.radius:.1f} mm and "
@@ -144,14 +147,18 @@ def _vote_for_centre(sample: Sample, near: Vector, radius: float) -> Vector:
     tree = KDTree(votes)
     agree = tree.query_ball_point(votes, _VOTES * radius, return_length=True) if len(votes) else [0]
     if np.max(agree) < _FEWEST:
-        raise NotEnoughData(
-            f"no ball of {2e3 * radius:g} mm lies near {_place(near)} m, where the scan has "
-            f"{len(sample)} points: read a place on it off cloud/cloud.ply into near_m, or scan "
-            "that part again."
-        )
+        raise NotEnoughData(_no_ball(sample, near, radius))
     most = tree.query_ball_point(votes[int(np.argmax(agree))], _VOTES * radius)
     centre: Vector = votes[most].mean(axis=0)
     return centre
+
+
+def _no_ball(around: Sample, near: Vector, radius: float) -> str:
+    return (
+        f"no ball of {2e3 * radius:g} mm lies near {_place(near)} m, where the scan has "
+        f"{len(around)} points: read a place on it off cloud/cloud.ply into near_m, or scan that "
+        "part again."
+    )
 
 
 def _off(points: Points, centre: Vector, radius: float) -> Scalars:

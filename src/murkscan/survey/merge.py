@@ -278,10 +278,7 @@ def _align_all(
 
 
 def _align(one: NumberedPass, number: int, placed: _Placed, reach: float | None) -> Alignment:
-    """Lay a pass on what is in place, by what faced the camera in both, where that tells all.
-
-    Where a curved surface turns away, each pass errs to the side from which it looked.
-    """
+    """Lay a pass on others by what faced the cameras, if that tells all: flanks are seen wrong."""
     source = one.sample()
     facing = placed.errors.is_facing(np.full(len(source), number), source)
     try:
