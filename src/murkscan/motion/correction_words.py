@@ -2,9 +2,9 @@
 
 import math
 
-from ..geometry.disagreement import Disagreement
 from .adjust.sureness import Sureness
 from .corrected import Correction
+from .sheets_apart import SheetsApart
 
 _NAMES = {
     "velocity_bias_x": ("velocity forward", "mm/s", 1e3),
@@ -59,13 +59,18 @@ def tell_doubt(correction: Correction) -> str:
     )
 
 
-def tell_sheets(apart: Disagreement) -> str:
+def tell_sheets(apart: SheetsApart) -> str:
     """Say how far two lasers' surfaces lie apart by poses that are not to be changed."""
+    far = (
+        f"where both lasers passed, their surfaces lie {1e3 * apart.between.rms:.2g} mm (RMS) "
+        f"apart, {1e3 * apart.between.within_95:.2g} mm at 95 % of the places"
+    )
+    if apart.is_noise:
+        return f"{far}: no more than noise, so poses and calibration agree"
     return (
-        f"where both lasers passed, their surfaces lie {1e3 * apart.rms:.2g} mm (RMS) apart, "
-        f"{1e3 * apart.within_95:.2g} mm at 95 % of the places: so far are the poses, or the "
-        "lasers' calibration, off between the two looks. The poses are left as they are; say in "
-        "[navigation] of the rig file how good they are, and the scan corrects them"
+        f"{far}: so far are the poses, or the lasers' calibration, off between the two looks. The "
+        "poses are left as they are; say in [navigation] of the rig file how good they are, and "
+        "the scan corrects them"
     )
 
 

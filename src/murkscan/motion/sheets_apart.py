@@ -1,6 +1,7 @@
 """How far apart two lasers' surfaces lie by a log that nobody may change."""
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -9,11 +10,27 @@ from ..types.cloud import PointCloud
 from ..types.profile import Profile
 from ..types.trajectory import Trajectory
 
+_SIGMAS = 3.0
+"""Standard deviations of a point by which noise, and curves between points, hold surfaces apart."""
 _MOST = 400_000
 """Points of each laser that are compared, about."""
 
 
-def compare_sheets(parts: Iterable[Profile], logged: Trajectory) -> Disagreement | None:
+@dataclass(frozen=True, eq=False)
+class SheetsApart:
+    """Where both lasers passed, and how well their points are known."""
+
+    between: Disagreement
+    sigma: float
+    """Median standard deviation of the points by their own noise [m]."""
+
+    @property
+    def is_noise(self) -> bool:
+        """Whether their surfaces lie no farther apart than noise has them."""
+        return self.between.rms < _SIGMAS * self.sigma
+
+
+def compare_sheets(parts: Iterable[Profile], logged: Trajectory) -> SheetsApart | None:
     """Tell how far apart the surfaces of the first two lasers lie; None where they share none.
 
     Args:
@@ -25,7 +42,8 @@ def compare_sheets(parts: Iterable[Profile], logged: Trajectory) -> Disagreement
     if len(lasers) < 2:
         return None
     one, other = (_as_cloud(profile[profile.laser == laser], logged) for laser in lasers[:2])
-    return find_disagreement(one, other)
+    between = find_disagreement(one, other)
+    return None if between is None else SheetsApart(between, float(np.median(profile.sigma)))
 
 
 def _as_cloud(profile: Profile, logged: Trajectory) -> PointCloud:
