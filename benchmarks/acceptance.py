@@ -125,7 +125,9 @@ def bars_of(found: dict[Case, Result]) -> list[Figure]:
 def main() -> None:
     found = make_in_pieces(scan_all)
     parts = [f"## {rig}\n\n" + "\n".join(table_of(found, rig)) for rig in RATE_HZ]
-    count = sum(case.rig == PAL and case.speed == USUAL for case in found)
+    count = sum(
+        one.rig == PAL and one.speed == USUAL and one.attenuation in COVERED for one in found
+    )
     tell(
         "acceptance",
         "Acceptance quantities in five waters, at three speeds",
@@ -138,7 +140,7 @@ pictures of {VISION} come 50 times a second. The rigs and their ways are exact h
 the finder and its noise. Where a cell says so, too little was found to tell (refused), or the case
 was not run in the time there was.
 
-{chr(10).join(parts)}
+{(2 * chr(10)).join(parts)}
 
 ## Do the intervals hold?
 

@@ -45,7 +45,7 @@ near = [np.array([side * APART / 2, 0.0, 0.865]) for side in (-1, 1)]  # read of
 first, second = (find_ball(sample, place, RADIUS) for place in near)
 for what, known, sigma, measured, limit in (
     ("probing size", 2 * RADIUS, 2e-6, first.diameter, 1e-4),
-    ("probing form", 0.0, 0.0, first.form, 5e-4),
+    ("probing form", 0.0, 0.0, first.form, 3e-4),
     ("sphere spacing", APART, 3e-6, measure_spacing(first, second), 1e-5),
 ):
     found = Finding(what, "the bar", known, sigma, measured, limit)

@@ -97,8 +97,14 @@ def test_errors_of_the_rig_that_shift_both_balls_do_not_change_their_spacing():
 
 
 def errors_of(seed: int, blur: tuple[float, float]) -> np.ndarray:
-    errors = np.random.default_rng(seed).standard_normal((80, 200))
-    return gaussian_filter(errors, blur)[10:-10, 25:-25] if any(blur) else errors[10:-10, 25:-25]
+    """Give noise that neighbours share, and now and then a particle that lifts the stripe."""
+    random = np.random.default_rng(seed)
+    errors = random.standard_normal((80, 200))
+    errors = gaussian_filter(errors, blur) if any(blur) else errors
+    errors /= errors.std()
+    for row, column in zip(*random.integers(10, 60, (2, random.poisson(1.0))), strict=True):
+        errors[row : row + 3, column : column + 9] += random.exponential(3.0)
+    return errors[10:-10, 25:-25]
 
 
 @pytest.mark.parametrize("blur", [(0.0, 0.0), (1.0, 3.0)])
@@ -111,10 +117,8 @@ def test_the_form_that_ever_more_points_come_to_lies_within_its_interval(blur):
     held = np.mean([abs(e) <= one.half_width for e, one in zip(errors, found, strict=True)])
     assert held >= 0.88
     # Half of what is stated would hold too few, twice as much is too wide.
-    assert np.mean([abs(e) <= one.half_width / 2 for e, one in zip(errors, found, strict=True)]) < (
-        0.88
-    )
-    assert np.median([one.half_width for one in found]) < 1.9 * 1.96 * errors.std()
+    ratio = np.median([one.half_width for one in found]) / (1.96 * errors.std())
+    assert 0.6 < ratio < 1.7
 
 
 def test_a_form_of_few_points_is_refused():

@@ -34,7 +34,7 @@ near_m = [1.0, 0.0, 0.8]
 within_mm = 50.0
 [limits]
 probing_size_mm = 0.3
-probing_form_mm = 0.7
+probing_form_mm = 1.0
 sphere_spacing_mm = 0.001
 """
 
