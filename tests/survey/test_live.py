@@ -74,6 +74,7 @@ def test_a_replayed_recording_is_shown_and_scanned(replayed):
     done = live.load_status()
     assert done.state == "done"
     assert done.recorded.pictures == NUM_PICTURES
+    assert abs(done.began - done.updated) < 600
     assert 0 < done.preview.frames <= NUM_PICTURES
     assert done.stripe.state == "good"
     assert done.speed.value == pytest.approx(1e3 * SPEED, rel=1e-6)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from ..capture import ArrivedFrame
 from ..distribute import AbstractExecutor
 from ..extract import AbstractExtractor
-from ..live import Mailbox, PictureWatch, SpreadFrames
+from ..live import Look, Mailbox, PictureWatch, SpreadFrames
 from ..triangulate import AbstractTriangulation, triangulate
 from ..types.background import Background
 from ..types.frame import Frame
@@ -29,18 +29,25 @@ _STALE = 0.12
 """Age from which a frame is dropped while others wait [s]: the rest of a quarter of a second goes
 to the frames that `Murk` looks ahead."""
 _WAIT = 0.25
-_WAITING = 64
+_WAITING = 16
 """Frames that wait at most, whatever their age."""
+_UNREAD = 4000
+"""Profiles that wait to be shown at most: more than a minute's."""
 _NICE = 5
 """By how much learning gives way to the finding."""
 
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """What a frame showed."""
+    """What a frame showed; its picture is not kept."""
 
-    frame: Frame
-    stripe: Stripe
+    index: int
+    """Number of the frame in the recording."""
+    time: float
+    """Recording time [s]."""
+    row_step: int
+    """2 where the frame is a field."""
+    look: Look
     profile: Profile
     latency: float
     """Time from its arrival to its profile [s]."""
@@ -84,11 +91,15 @@ class LiveFinder:
             learner: Who learns; a process of its own leaves the finding alone.
         """
         self.frames = Mailbox[ArrivedFrame](_WAITING)
-        self.found = Mailbox[Found](64 * _WAITING)
+        self.found = Mailbox[Found](_UNREAD)
         self.background: Background | None = None
         """What was learnt last; None while nothing was."""
         self.looked, self.dropped = 0, 0
+        self.undecoded = 0
+        """Pictures that were too late to be decoded."""
         self.newest: Frame | None = None
+        self.drawable: tuple[Frame, Stripe] | None = None
+        """The newest frame in which the stripe was looked for."""
         self.failure = ""
         """Why the finding has ended, if by an error of its own."""
         self._rig, self._extractor, self._method = rig, extractor, method
@@ -131,8 +142,14 @@ class LiveFinder:
             arrived = self._pending.popleft()
             profile = triangulate(stripe, self._rig, self._method)
             latency = time.monotonic() - arrived.arrived
-            self.found.put(Found(arrived.frame, stripe, profile, latency))
-            self.looked += 1
+            self._tell(arrived.frame, stripe, profile, latency)
+
+    def _tell(self, frame: Frame, stripe: Stripe, profile: Profile, latency: float) -> None:
+        look = Look.of(frame, profile, self._rig.laser(self._laser).axis)
+        self.watch.look(frame, look.is_seen)
+        self.drawable = frame, stripe
+        self.found.put(Found(frame.index, frame.time, frame.row_step, look, profile, latency))
+        self.looked += 1
 
     def _feed(self, background: Background) -> Iterator[Frame]:
         """Give frames until something new has been learnt, or no more come."""

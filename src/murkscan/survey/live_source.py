@@ -3,6 +3,7 @@
 import abc
 import threading
 import time
+from collections import deque
 from contextlib import closing
 from dataclasses import replace
 from typing import ClassVar, final
@@ -19,6 +20,7 @@ from ..capture import (
     FrameSplitter,
     StreamDecoder,
     grey_from_camera,
+    is_camera,
     record_dive,
 )
 from ..capture.field_order import Fields
@@ -31,6 +33,8 @@ from .live_finder import LiveFinder
 _WAIT = 0.25
 _CODED = 250
 """Pictures that wait to be decoded at most: ten seconds of them."""
+_LATE = 0.5
+"""Age from which a picture is late to be decoded [s]."""
 _IMAGES = 8
 """The same of a camera here, whose pictures are not compressed."""
 _SILENT = 2.0
@@ -102,6 +106,7 @@ class RecordedSource(LiveSource):
         self._coded = Mailbox[tuple[int, CodedPicture]](_CODED)
         self._images = Mailbox[tuple[np.ndarray, ArrivedPicture]](_IMAGES)
         there = sum(chapter.stat().st_size for chapter in folder.chapters)
+        self._backlog = deque[tuple[int, CodedPicture]]()
         self._number, self._earlier = 0, Recorded(bytes=there)
 
     def _give(self, finder: LiveFinder) -> None:
@@ -156,21 +161,37 @@ class RecordedSource(LiveSource):
         """Decode what has come, in a thread of its own, so that recording never waits for it."""
         decoder, splitter = StreamDecoder(self._rig.wavelength), FrameSplitter(self._fields)
         try:
-            while not (self._coded.is_done and self._images.is_done):
-                for picture in self._next_pictures(decoder):
+            while self._backlog or not (self._coded.is_done and self._images.is_done):
+                for picture in self._next_pictures(decoder, finder):
                     _check_size(picture, self._rig, self._source)
                     for frame in splitter.split(picture):
                         finder.frames.put(frame)
         except Exception as error:  # whatever it is, the recording goes on
             finder.failure = str(error)
 
-    def _next_pictures(self, decoder: StreamDecoder) -> list[ArrivedPicture]:
-        image = self._images.get(0.0)
-        if image is not None:
+    def _next_pictures(self, decoder: StreamDecoder, finder: LiveFinder) -> list[ArrivedPicture]:
+        if is_camera(self._source):
+            image = self._images.get(_WAIT)
+            if image is None:
+                return []
             grey = grey_from_camera(image[0], self._rig.wavelength)
             return [replace(image[1], image=grey)]
-        coded = self._coded.get(_WAIT if self._number == 0 or not image else 0.0)
-        return [] if coded is None else decoder.decode(*coded)
+        if not self._backlog:
+            came = self._coded.get(_WAIT)
+            self._backlog += [] if came is None else [came]
+        finder.undecoded += self._catch_up()
+        return decoder.decode(*self._backlog.popleft()) if self._backlog else []
+
+    def _catch_up(self) -> int:
+        """Where decoding is late, go on at the newest keyframe; count what is passed over."""
+        if not self._backlog or time.monotonic() - self._backlog[0][1].arrived < _LATE:
+            return 0
+        self._backlog += self._coded.take_all()
+        keys = [at for at, (_, coded) in enumerate(self._backlog) if coded.is_keyframe]
+        passed = keys[-1] if keys else 0
+        for _ in range(passed):
+            self._backlog.popleft()
+        return passed
 
 
 def _check_size(picture: ArrivedPicture, rig: Rig, source: str) -> None:

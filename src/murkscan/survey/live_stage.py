@@ -14,7 +14,7 @@ from ..live.gauges import FULL
 from ..live.status import ScanProgress, State
 from ..motion.following import AbstractFollower
 from ..types.rig import Rig
-from .live_finder import Found, LiveFinder
+from .live_finder import LiveFinder
 from .live_settings import LiveSettings
 from .live_source import LiveSource
 from .live_view import LiveView
@@ -66,22 +66,18 @@ class LiveStage:
             working=settings.working,
         )
         self._ticks, self._failure, self._is_over = 0, "", False
-        self._found: list[Found] = []
 
     def tick(self) -> None:
         """Show what has come; that the preview fails ends no recording."""
         self._ticks += 1
         try:
             view, free = self._view, self._free()
-            new = self._finder.found.take_all()
-            self._found += new
             if self.pictures.recorded.pictures and self._basis.began is None:
                 self._basis = replace(self._basis, began=self._began() or time.time())
             if free > FULL:
-                view.draw(self._finder, new)
-                if self._ticks % _POINTS == 0:
-                    view.add(self._found, self._finder)
-                    self._found = []
+                view.draw(self._finder)
+                if self._ticks % _POINTS == 0 or self._is_over:
+                    view.add(self._finder.found.take_all(), self._finder)
             state, message = self._say()
             status = view.tell(
                 state,

@@ -12,7 +12,6 @@ from ..live import (
     GapMap,
     LiveFolder,
     LiveStatus,
-    Look,
     RecentLooks,
     draw_picture,
     find_working_range,
@@ -92,7 +91,8 @@ class LiveView:
         self._coverage = GrowingCoverage(wanted=spacing, cell=spacing, most=_CELLS)
         self._go_on()
         self._speed: float | None = None
-        self._covered, self._drawn, self._draw_next = Covered(), 0, 0.0
+        self._covered, self._draw_next = Covered(), 0.0
+        self._drawn, self._shown = -1, -1
         there = folder.find_points()
         self._points = PointCount(max(there, default=-1) + 1)
         self._fields = 1
@@ -100,33 +100,32 @@ class LiveView:
     def add(self, found: Sequence[Found], finder: LiveFinder) -> None:
         """Take note of frames, in order, and write the points whose poses are known by now."""
         for one in found:
-            look = Look.of(one.frame, one.profile, self._axis)
-            self._recent.add(look, one.frame.index, one.latency)
-            finder.watch.look(one.frame, look.is_seen)
-            self._fields = one.frame.row_step
+            self._recent.add(one.look, one.index, one.latency)
+            self._fields = one.row_step
         self._waiting += found
         if not self._waiting:
             return
         self._follower = self._follower or self._make_follower()
         self._follower.refresh()
-        newest = self._waiting[-1].frame.time
+        newest = self._waiting[-1].time
         until = max(self._follower.known_until, newest - _PATIENCE)
-        ready = [one for one in self._waiting if one.frame.time <= until]
+        ready = [one for one in self._waiting if one.time <= until]
         self._waiting = self._waiting[len(ready) :]
         if ready:
             self._place(
                 ready, self._follower, 0.0 if finder.background is None else finder.background.noise
             )
 
-    def draw(self, finder: LiveFinder, found: Sequence[Found]) -> None:
+    def draw(self, finder: LiveFinder) -> None:
         """Write the newest picture, and the newest one in which the stripe was looked for."""
         newest = finder.newest
         if newest is not None and newest.index != self._drawn:
             self._drawn = newest.index
             write_image(self._folder.picture, draw_picture(newest))
-        if found:
-            drawn = draw_picture(found[-1].frame, found[-1].stripe.pixels)
-            write_image(self._folder.stripe, drawn)
+        if finder.drawable is not None and finder.drawable[0].index != self._shown:
+            frame, stripe = finder.drawable
+            self._shown = frame.index
+            write_image(self._folder.stripe, draw_picture(frame, stripe.pixels))
 
     def tell(
         self,
@@ -162,7 +161,10 @@ class LiveView:
             pid=os.getpid(),
             recorded=recorded,
             preview=Preview(
-                finder.looked, finder.dropped + finder.frames.dropped, self._recent.latency, rate
+                finder.looked,
+                finder.dropped + finder.frames.dropped + finder.undecoded * self._fields,
+                self._recent.latency,
+                rate,
             ),
             stand_off=gauge_stand_off(looks, self._working, water.reach),
             speed=gauge_speed(self._speed, rate, self._spacing),
@@ -178,8 +180,8 @@ class LiveView:
 
     def _place(self, found: Sequence[Found], follower: AbstractFollower, noise: float) -> None:
         """Carry what was found into the world, and add it to points and map."""
-        times = np.array([one.frame.time for one in found])
-        numbers = np.array([one.frame.index for one in found], np.uint32)
+        times = np.array([one.time for one in found])
+        numbers = np.array([one.index for one in found], np.uint32)
         way = follower.follow(times, numbers / self._fields)
         if way is None:
             return
