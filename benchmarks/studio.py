@@ -69,8 +69,8 @@ _NOTE = """
 Chromium without a screen draws by the processor and clicks through the studio: photographs of a
 board from a stream, the camera, photographs of the laser's line, the laser, a dive, and a ball
 measured. Boards, lines and the dive (c = 1.5 /m) are simulated, and come as H.264 by RTP over the
-loopback interface; the commands are given the pictures that the streams were made of. Time and the
-preview depend on what else the machine does.
+loopback interface; the commands are given the pictures that the streams were made of. The time
+depends on what else the machine does.
 """
 
 
@@ -92,7 +92,7 @@ def _click(made: Path, work: Path, pictures: Path | None) -> dict:
         for step, stream in (("camera", "boards"), ("laser", "lines")):
             _photograph(page, step, stream, streams)
             _calibrate(page, step)
-        share = _dive(page, streams)
+        _dive(page, streams)
         radius = _measure(page, work)
         minutes = (time.monotonic() - began) / 60
         too_wide = _look_at_all(browser, address, pictures)
@@ -104,7 +104,6 @@ def _click(made: Path, work: Path, pictures: Path | None) -> dict:
             ("from the first board to the measure", minutes, "min", 10.0),
             ("errors in the browser's console", len(faults), "", 0.0),
             ("pages that are wider than their screen, of 20", too_wide, "", 0.0),
-            ("frames that the preview left out", share, "%"),
         ],
     }
 
@@ -140,8 +139,8 @@ def _calibrate(page, step: str) -> None:
     _wait_for(page, f"calibrate {step}")
 
 
-def _dive(page, streams: Streams) -> float:
-    """Record a dive, end it when it is over, and wait for its scan; gives what was left out [%]."""
+def _dive(page, streams: Streams) -> None:
+    """Record a dive, end it when it is over, and wait for its scan."""
     page.evaluate("location.hash = 'live'")
     page.locator("input[name=source]").fill("dive.sdp")
     page.locator("select[name=rig]").select_option("rig.toml")
@@ -156,10 +155,7 @@ def _dive(page, streams: Streams) -> float:
         sender.join()
     page.keyboard.press("e")
     page.keyboard.press("e")
-    said = page.locator(".gauge[data-name=Preview] small").inner_text()
-    dropped, of = (float(number.replace(",", "")) for number in re.findall(r"[\d,]+", said))
     _wait_for(page, "live dive.sdp")
-    return 100 * dropped / max(of, 1)
 
 
 def _measure(page, work: Path) -> tuple[float, float]:
