@@ -74,6 +74,10 @@ def test_it_says_how_far_and_how_sure_and_what_is_open(corrected):
     words = tell_correction(found)
     assert words[0].startswith("corrected from what the scan saw twice, by ")
     assert "length of the way" in words[1]
+    # Times of a dive count from 1970: it is told from the scan's own beginning.
+    way = found.trajectory
+    late = replace(found, trajectory=replace(way, times=way.times + 1.7e9))
+    assert tell_correction(late)[0] == words[0]
     doubted = replace(found, blind=3.0)
     assert not doubted.is_sound
     assert "Over 3.0 s" in tell_doubt(doubted)

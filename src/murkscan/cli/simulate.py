@@ -59,6 +59,7 @@ def simulate(
 
 def _next_steps(scene: "Scene", recording: Path, out: Path) -> list[str]:
     """Say what the recording can be used for."""
+    from ..simulate.instruments import Instruments
     from ..simulate.textures.checkered import Checkered
 
     if boards := [b.texture for b in scene.bodies if isinstance(b.texture, Checkered)]:
@@ -72,6 +73,12 @@ def _next_steps(scene: "Scene", recording: Path, out: Path) -> list[str]:
         f"murkscan scan {quote(str(recording))} --rig {quote(str(out / 'rig.toml'))} --poses "
         f"{quote(str(out / 'poses.csv'))} --out SCAN"
     ]
+    if isinstance(scene.navigation, Instruments):
+        speed = "" if scene.navigation.kind == "dvl" else " --speed-mm-s V"
+        steps.append(
+            f"murkscan scan {quote(str(recording))} --rig {quote(str(out / 'rig.toml'))} "
+            f"--navigation {quote(str(out / 'navigation.csv'))}{speed} --out SCAN"
+        )
     if scene.acceptance:
         steps.append(f"murkscan accept SCAN --test {quote(str(out / 'acceptance.toml'))}")
     return steps

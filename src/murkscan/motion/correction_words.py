@@ -24,10 +24,10 @@ _CLOCK = 0.02
 
 def tell_correction(correction: Correction) -> tuple[str, ...]:
     """Say how far the log was corrected, how sure each direction is, and what stayed open."""
-    moved = 1e3 * correction.moved
+    moved, times = 1e3 * correction.moved, correction.trajectory.times
     lines = [
         f"corrected from what the scan saw twice, by {math.sqrt((moved**2).mean()):.3g} mm (RMS), "
-        f"{moved.max():.3g} mm at most, {correction.trajectory.times[moved.argmax()]:.1f} s after "
+        f"{moved.max():.3g} mm at most, {times[moved.argmax()] - times[0]:.1f} s after "
         "the beginning",
         "known now to (1σ, but for the ends; in brackets by the log alone): "
         + ", ".join(map(_tell_sureness, correction.sureness)),
