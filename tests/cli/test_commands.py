@@ -10,7 +10,7 @@ from murkscan.cli.main import run
 
 COMMANDS = [
     "demo", "simulate", "calibrate", "capture", "live", "scan", "extract", "triangulate", "motion",
-    "cloud", "merge", "mesh", "measure", "view", "report", "plan",
+    "cloud", "merge", "mesh", "measure", "view", "report", "plan", "studio",
 ]  # fmt: skip
 
 
