@@ -63,15 +63,15 @@ def test_a_surface_far_from_the_origin_keeps_its_place_and_its_shape(tmp_path, s
 
 
 def test_an_stl_and_a_glb_say_where_they_count_from(tmp_path):
-    mesh = Mesh(pyramid().vertices + np.array([432100.0, 5412345.0, -12.0]), pyramid().faces)
+    mesh = Mesh(pyramid().vertices + np.array([432100.0, 5412345.0, -4.5]), pyramid().faces)
     for suffix in (".stl", ".glb"):
         save_mesh(tmp_path / f"mesh{suffix}", mesh)
     stl = (tmp_path / "mesh.stl").read_bytes()
-    assert stl[:80].rstrip() == b"murkscan: metres, origin 432102 5412349 -8 m"
+    assert stl[:80].rstrip() == b"murkscan: metres, origin 432102 5412349 0 m"
     assert np.abs(trimesh.load(tmp_path / "mesh.stl").vertices).max() < 4
     glb = (tmp_path / "mesh.glb").read_bytes()
     tables = json.loads(glb[20 : 20 + struct.unpack_from("<I", glb, 12)[0]])
-    assert tables["asset"]["extras"]["origin_m"] == [432102, 5412349, -8]
+    assert tables["asset"]["extras"]["origin_m"] == [432102, 5412349, 0]
     assert np.abs(trimesh.load(tmp_path / "mesh.glb", force="mesh").vertices).max() < 4
 
 

@@ -87,7 +87,7 @@ def test_a_cloud_made_anew_has_to_be_laid_again(scanned):
     file.write_text(text.replace(scanned.finished(CLOUD).digest, "0" * 16), "utf-8")
     from murkscan.errors import MissingResult
 
-    with pytest.raises(MissingResult, match="older than its cloud"):
+    with pytest.raises(MissingResult, match="earlier cloud"):
         load_georeference(scanned)
     file.write_text(text, "utf-8")
 

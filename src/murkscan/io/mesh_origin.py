@@ -25,7 +25,7 @@ def choose_origin(vertices: Points) -> Vector:
     """Choose where a file's coordinates count from [m]: 0, or a whole metre amid far vertices."""
     if np.abs(vertices).max(initial=0.0) <= NEAR:
         return np.zeros(3)
-    return np.round((vertices.min(axis=0) + vertices.max(axis=0)) / 2)
+    return np.round((vertices.min(axis=0) + vertices.max(axis=0)) / 2) + 0.0  # no negative zero
 
 
 def state_in_stl(data: bytes, origin: Vector) -> bytes:

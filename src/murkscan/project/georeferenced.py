@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..errors import MissingResult
 from ..types.georeference import Georeference
 from ..types.pose import Pose
 from .folder import Project
@@ -24,7 +25,14 @@ def load_georeference(project: Project) -> Georeference | None:
     """
     if not is_georeferenced(project):
         return None
-    return as_georeference(project.finished(GEOREFERENCE).result)
+    try:
+        return as_georeference(project.finished(GEOREFERENCE).result)
+    except MissingResult as error:
+        folder = project.root / GEOREFERENCE.word
+        raise MissingResult(
+            f"What {folder} says is of an earlier cloud: run `murkscan georeference` again, or "
+            "delete that folder to stay in the model's own world."
+        ) from error
 
 
 def as_georeference(result: GeoreferenceResult) -> Georeference:
