@@ -91,8 +91,12 @@ def main() -> None:
             figures += _stream(case, made[case.scene], root / f"dive-{case.port}", seconds)
             print("\n".join(one.as_row() for one in figures[-6:]), flush=True)
         figures += _compare(root / "compared")
+    tell("live", "Live: how far behind, and how true", figures, note=_note(seconds))
+
+
+def _note(seconds: float) -> str:
     load = os.getloadavg()[0]
-    note = (
+    return (
         f"H.264 by RTP over the loopback interface, {seconds:g} s each, on {os.cpu_count()} cores "
         f"with a load of {load:.1f} in the last minute, this benchmark's own among it. On a "
         "machine that does other things as well frames come later and more are dropped: then what "
@@ -105,7 +109,6 @@ def main() -> None:
         "times as slowly so that maps are compared and not machines: the share of the cells "
         "that are gaps in either map, the preview's or the scan's, that are in both."
     )
-    tell("live", "Live: how far behind, and how true", figures, note=note)
 
 
 def _make(name: str, out: Path) -> Path:
