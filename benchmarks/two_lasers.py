@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from dive_files import Dive, Flaws, encode_h264, write_blueos
 from harness import Figure, tell
 from trajectory import fit_rigid
 
@@ -30,6 +31,8 @@ LATE = 0.12
 """How late the scene's log is stamped [s]."""
 SPEED, OFF = 0.1, 1.1
 """Speed of the scene [m/s], and what it is taken for, as a share of it."""
+LATE_PICTURES = 0.3
+"""How late a dive's pictures are stamped [s]."""
 
 
 def main() -> None:
@@ -61,6 +64,7 @@ def main() -> None:
         figures += [
             Figure(f"{name}: moved", 1e3 * (project.finished(MOTION).result.corrected or 0), "mm")
         ]
+    figures += scan_dive(scene, given.work)
     note = NOTE.format(frames=given.frames, c=given.attenuation, late=1e3 * LATE)
     tell("two_lasers", "Two lasers, from frames to the corrected trajectory", figures, note=note)
 
@@ -74,6 +78,41 @@ def extract(scene, work):
     extract_recording(project, recording, rig, ms.Murk())
     triangulate_stripes(project, rig, ms.RaySheet())
     return project, rig
+
+
+def scan_dive(scene, work):
+    """Scan the same as BlueOS records it: stamps of arrival, a delay, a clock put back, cut off."""
+    dive, flaws = work / "flaws.mcap", Flaws(jitter=0.04, delay=LATE_PICTURES, step_at=2.0,
+                                             step=-1.0, cut=0.95)  # fmt: skip
+    if not dive.exists():
+        frames = list(ms.open_recording(work / "dive" / "frames").frames())
+        packets = encode_h264([frame.image for frame in frames], 25.0)
+        times = np.array([frame.time for frame in frames])
+        way = scene.trajectory.at(np.arange(-1.5, times[-1] + 1.5, 0.1))
+        write_blueos(dive, Dive(packets, times, way), flaws=flaws, position=False,
+                     chunk_size=20_000)  # fmt: skip
+    rig, recording = ms.load_rig(work / "dive" / "rig.toml"), ms.open_recording(dive)
+    project, figures = ms.Project(work / "dive-scan"), []
+    begin_scan(project, recording, rig, settings={})
+    extract_recording(project, recording, rig, ms.Murk())
+    triangulate_stripes(project, rig, ms.RaySheet())
+    motion, _ = follow_navigation(dive, rig, speed=OFF * SPEED, sigma=0.1, along="y")
+    for adjust in (False, True):
+        result = follow_motion(project, motion, adjust=adjust)
+        print(*result.correction, sep="\n  ")
+        found, profile = project.load_trajectory(), project.load_profile()
+        profile = profile[found.has(profile.time)]
+        placed = found.transform(profile.points, profile.time)
+        there = scene.trajectory.transform(profile.points, profile.frame / 25.0)
+        off = 1e3 * np.sqrt(np.mean(np.sum((fit_rigid(placed, there) - there) ** 2, axis=1)))
+        name = "corrected" if adjust else "as logged"
+        bar = 0.4 if adjust else None
+        figures.append(Figure(f"as BlueOS records it, {name}: place", float(off), "mm", bar))
+    clock = next((words for words in result.correction if "clock" in words), "")
+    late = float(clock.split(" is ")[1].split(" ")[0]) if " s behind" in clock else np.nan
+    figures.append(Figure("as BlueOS records it: pictures later than found", 1e3 * abs(
+        LATE_PICTURES - late), "ms", 10))  # fmt: skip
+    return figures
 
 
 def judge_finder(project, scene, work):
@@ -112,7 +151,9 @@ alignment: *surface* across the plate, *place* in all directions; *length* betwe
 the last profile, counted for 2 m. What limits it: what both sheets see alike, above all a heave
 that repeats itself in the time from one sheet to the other, here 1.1 s. It is as well known as
 the depth gauge has it, of 5 mm a reading. Without an attitude the way's bend is known by slopes
-from sheet to sheet only.
+from sheet to sheet only. *As BlueOS records it*: the same pictures in H.264 in an MCAP, with
+attitude and depth, stamps of arrival with 40 ms of jitter, pictures 300 ms late, a clock put back
+by 1 s, cut off at 95 % of the file.
 """
 
 
