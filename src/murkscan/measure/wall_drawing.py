@@ -1,12 +1,18 @@
 """The elevation of a wall as a picture to scale, with its sections and anomalies."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..types.arrays import ColourImage
 from .deflection import Deflection
 from .wall_map import Anomaly, WallMap
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.image import AxesImage
 
 _INK, _MARK, _CURVE = "#202428", "#7b3294", "#2166ac"
 _DPI = 150
@@ -37,51 +43,87 @@ def draw_wall(
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
-    from matplotlib.patches import Rectangle
 
-    height, width = (count * wall.cell for count in wall.values.shape)
-    scale = _round_up(max(width / _SHEET[0], height / _SHEET[1], 1e-3))
-    on_paper = (max(width / scale, 0.03), max(height / scale, 0.05))
-    full = (on_paper[0] + 3 * _MARGIN[0] + len(curves) * _CURVES, on_paper[1] + 2 * _MARGIN[1])
-    figure = Figure(figsize=(full[0] / _INCH, full[1] / _INCH), dpi=_DPI)
+    sheet = _Sheet.of(wall, len(curves))
+    figure = Figure(figsize=(sheet.size[0] / _INCH, sheet.size[1] / _INCH), dpi=_DPI)
     canvas = FigureCanvasAgg(figure)
+    axes = figure.add_axes(sheet.panel(_MARGIN[0] / 2, sheet.map[0]))
+    colours = figure.add_axes(sheet.panel(_MARGIN[0] * 0.65 + sheet.map[0], 0.004))
+    figure.colorbar(_draw_map(axes, wall), cax=colours, label="out of the wall [mm]")
+    for number, one in enumerate(anomalies, 1):
+        _box(axes, number, one)
+    for number, curve in enumerate(curves):
+        axes.axvline(curve.along, color=_INK, linewidth=0.6, linestyle="--")
+        start = 2 * _MARGIN[0] + sheet.map[0] + number * _CURVES
+        beside = figure.add_axes(sheet.panel(start, 0.75 * _CURVES))
+        _draw_curve(beside, curve, axes.get_ylim())
+        beside.tick_params(labelsize=7, labelleft=number == 0)
+    title = f"{title}, 1 : {sheet.scale} at {_DPI} dots an inch"
+    figure.suptitle(title, size=11, color=_INK)
+    canvas.draw()  # type: ignore[no-untyped-call]
+    picture = np.asarray(canvas.buffer_rgba())[..., :3]  # type: ignore[no-untyped-call]
+    return np.ascontiguousarray(picture), sheet.scale
 
-    def panel(left: float, wide: float) -> tuple[float, float, float, float]:
-        return left / full[0], _MARGIN[1] / full[1], wide / full[0], on_paper[1] / full[1]
 
-    axes = figure.add_axes(panel(_MARGIN[0] / 2, on_paper[0]))
+@dataclass(frozen=True)
+class _Sheet:
+    """How a wall and its curves are laid out on paper."""
+
+    scale: int
+    """Denominator of the map's scale."""
+    map: tuple[float, float]
+    """Width and height of the map [m]."""
+    size: tuple[float, float]
+    """Of the whole [m]."""
+
+    @classmethod
+    def of(cls, wall: WallMap, num_curves: int) -> "_Sheet":
+        height, width = (count * wall.cell for count in wall.values.shape)
+        scale = _round_up(max(width / _SHEET[0], height / _SHEET[1], 1e-3))
+        drawn = (max(width / scale, 0.03), max(height / scale, 0.05))
+        whole = (drawn[0] + 3 * _MARGIN[0] + num_curves * _CURVES, drawn[1] + 2 * _MARGIN[1])
+        return cls(scale, drawn, whole)
+
+    def panel(self, left: float, width: float) -> tuple[float, float, float, float]:
+        """Give where a panel of the map's height lies, in shares of the whole."""
+        low, height = _MARGIN[1] / self.size[1], self.map[1] / self.size[1]
+        return left / self.size[0], low, width / self.size[0], height
+
+
+def _draw_map(axes: "Axes", wall: WallMap) -> "AxesImage":
+    """Draw the wall in colours that all but the last percents of the cells lie within."""
+    height, width = (count * wall.cell for count in wall.values.shape)
     left, low = wall.low
     known = 1e3 * wall.values[np.isfinite(wall.values)]
     reach = max(float(np.abs(np.percentile(known, [_SHARE, 100 - _SHARE])).max()), 0.5)
-    shown = axes.imshow(
+    axes.set_xlabel("along [m]")
+    axes.set_ylabel("height [m]")
+    return axes.imshow(
         1e3 * wall.values, cmap="RdBu_r", vmin=-reach, vmax=reach, origin="lower",
         extent=(left, left + width, low, low + height), interpolation="nearest",
     )  # fmt: skip
-    colours = figure.add_axes(panel(_MARGIN[0] * 0.65 + on_paper[0], 0.004))
-    figure.colorbar(shown, cax=colours, label="out of the wall [mm]")
-    for number, one in enumerate(anomalies, 1):
-        corner = (one.along - one.width / 2, one.height - one.rise / 2)
-        axes.add_patch(Rectangle(corner, one.width, one.rise, fill=False, edgecolor=_MARK))
-        axes.annotate(str(number), (one.along, one.height), color=_MARK, ha="center", va="center")
-    start = 2 * _MARGIN[0] + on_paper[0]
-    for number, curve in enumerate(curves):
-        axes.axvline(curve.along, color=_INK, linewidth=0.6, linestyle="--")
-        beside = figure.add_axes(panel(start + number * _CURVES, 0.75 * _CURVES))
-        half = curve.half_width
-        edges = 1e3 * (curve.distance - half), 1e3 * (curve.distance + half)
-        beside.fill_betweenx(curve.height, *edges, color=_CURVE, alpha=0.3, linewidth=0)
-        beside.plot(1e3 * curve.distance, curve.height, color=_CURVE, linewidth=0.8)
-        beside.set_ylim(low, low + height)
-        beside.set_title(f"at {curve.along:.2f} m", size=8, color=_INK)
-        beside.set_xlabel("[mm]", size=8)
-        beside.tick_params(labelsize=7, labelleft=number == 0)
-        beside.grid(alpha=0.3)
-    axes.set_xlabel("along [m]")
-    axes.set_ylabel("height [m]")
-    figure.suptitle(f"{title}, 1 : {scale} at {_DPI} dots an inch", size=11, color=_INK)
-    canvas.draw()  # type: ignore[no-untyped-call]
-    picture = np.asarray(canvas.buffer_rgba())[..., :3]  # type: ignore[no-untyped-call]
-    return np.ascontiguousarray(picture), scale
+
+
+def _box(axes: "Axes", number: int, anomaly: Anomaly) -> None:
+    """Draw a box around an anomaly, with its number."""
+    from matplotlib.patches import Rectangle
+
+    corner = (anomaly.along - anomaly.width / 2, anomaly.height - anomaly.rise / 2)
+    axes.add_patch(Rectangle(corner, anomaly.width, anomaly.rise, fill=False, edgecolor=_MARK))
+    middle = (anomaly.along, anomaly.height)
+    axes.annotate(str(number), middle, color=_MARK, ha="center", va="center")
+
+
+def _draw_curve(axes: "Axes", curve: Deflection, heights: tuple[float, float]) -> None:
+    """Draw a section's deflection beside the map, at the map's own heights."""
+    half = curve.half_width
+    edges = 1e3 * (curve.distance - half), 1e3 * (curve.distance + half)
+    axes.fill_betweenx(curve.height, *edges, color=_CURVE, alpha=0.3, linewidth=0)
+    axes.plot(1e3 * curve.distance, curve.height, color=_CURVE, linewidth=0.8)
+    axes.set_ylim(*heights)
+    axes.set_title(f"at {curve.along:.2f} m", size=8, color=_INK)
+    axes.set_xlabel("[mm]", size=8)
+    axes.grid(alpha=0.3)
 
 
 def _round_up(number: float) -> int:

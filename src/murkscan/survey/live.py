@@ -3,7 +3,7 @@
 import threading
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..capture import (
@@ -67,26 +67,127 @@ def run_live(
         StreamLost: No picture has come at all.
         DeviceError: The disk is full; what is recorded is kept.
     """
-    project, dive = Project(out, tuple(command)), DiveFolder(out / "capture")
     rig.laser(settings.laser)
+    project = Project(out, tuple(command))
     project.check_writable()
     recording = _open(source, rig, settings.fields)
+    dive = _Dive(
+        source, recording, rig, settings, project, DiveFolder(out / "capture"),
+        LiveFolder(out / "live"),
+    )  # fmt: skip
     with project.hold():
-        show = LiveFolder(out / "live")
-        record = dive.record
-        if record is not None and record.source != source:
-            raise InputError(
-                f"{out} holds a dive that was recorded from {record.source}; give another folder "
-                "with --out, or the same source to go on with it."
-            )
-        if record is None:
-            show.clear()
-        if record is None or not record.ended:
+        if not dive.is_over():
             with settings.beside():
-                _dive(source, recording, rig, settings, dive, show, tell, until)
-        return _scan(
-            source, recording, rig, settings, project, dive, show,
-            rig_file=rig_file, executor=executor, progress=progress,
+                dive.go_on(tell, until)
+        return dive.scan(rig_file, executor, progress)
+
+
+@dataclass(frozen=True)
+class _Dive:
+    """What is recorded or replayed, how, and the folders for it."""
+
+    source: str
+    recording: AbstractRecording | None
+    """What is replayed; None for a stream or a camera, which is recorded."""
+    rig: Rig
+    settings: LiveSettings
+    project: Project
+    folder: DiveFolder
+    show: LiveFolder
+
+    def is_over(self) -> bool:
+        """Tell whether it was over when the command ran last; a new one begins with no preview."""
+        record = self.folder.record
+        if record is None:
+            self.show.clear()
+            return False
+        if record.source != self.source:
+            raise InputError(
+                f"{self.project.root} holds a dive that was recorded from {record.source}; give "
+                "another folder with --out, or the same source to go on with it."
+            )
+        return record.ended
+
+    def go_on(self, tell: Tell, until: Callable[[], bool]) -> None:
+        """Record or replay, and show it, until it ends."""
+        pictures, finder = self._pictures(), self._finder()
+        receiving = threading.Thread(target=pictures.run, args=(finder,), daemon=True)
+        finding = threading.Thread(target=finder.run, daemon=True)
+        stage = LiveStage(
+            self.source, pictures, finder, show=self.show, folder=self.folder, rig=self.rig,
+            settings=self.settings, tell=tell,
+        )  # fmt: skip
+        receiving.start()
+        finding.start()
+        _play(stage, until)
+        finder.frames.close()
+        finding.join()
+        stage.finish()
+        if pictures.failure is not None:
+            failed = replace(_last_status(self.show), state="failed", message=str(pictures.failure))
+            with suppress(MurkscanError):  # the disk may be full
+                self.show.save_status(failed)
+            raise pictures.failure
+        self.folder.save(replace(self._record(), ended=True))
+
+    def scan(
+        self, rig_file: Path | None, executor: AbstractExecutor | None, progress: Progress
+    ) -> Project:
+        """Learn from the whole recording, and scan it."""
+        status = _last_status(self.show)
+        scanning = replace(status, state="scanning", message="Scanning the recording.")
+        teller = ScanTeller(self.show, scanning)
+
+        def both(stage: str, done: int, total: int | None) -> None:
+            teller(stage, done, total)
+            progress(stage, done, total)
+
+        made = scan(
+            self._recorded(),
+            self.rig,
+            self.settings.move(self._record().began),
+            out=self.project.root,
+            extractor=self.settings.extractor,
+            method=self.settings.method,
+            lasers=self.settings.lasers,
+            spacing=self.settings.spacing,
+            rig_file=rig_file,
+            command=self.project.command,
+            executor=executor,
+            progress=both,
+        )
+        done = replace(teller.status, state="done", message="The dive is scanned.", scan=None)
+        self.show.save_status(done)
+        return made
+
+    def _record(self) -> DiveRecord:
+        return self.folder.record or DiveRecord(self.source, 0.0)
+
+    def _recorded(self) -> AbstractRecording:
+        """Give the whole recording: what was replayed, or all chapters that were written."""
+        if self.recording is not None:
+            return self.recording
+        chapters = self.folder.chapters
+        if not chapters:
+            raise MissingResult(
+                f"{self.folder.root} holds no recording; run the same command again."
+            )
+        return open_recording(chapters, wavelength=self.rig.wavelength, fields=self.settings.fields)
+
+    def _pictures(self) -> LiveSource:
+        if self.recording is not None:
+            return ReplayedSource(self.recording)
+        settings = self.settings
+        return RecordedSource(
+            self.source, self.folder, self.rig, fields=settings.fields, timeout=settings.timeout,
+            patience=settings.patience,
+        )  # fmt: skip
+
+    def _finder(self) -> LiveFinder:
+        settings = self.settings
+        return LiveFinder(
+            self.rig, settings.extractor, settings.method, laser=settings.laser,
+            learner=settings.learner,
         )  # fmt: skip
 
 
@@ -105,60 +206,6 @@ def _open(source: str, rig: Rig, fields: Fields) -> AbstractRecording | None:
     return recording
 
 
-def _dive(
-    source: str,
-    recording: AbstractRecording | None,
-    rig: Rig,
-    settings: LiveSettings,
-    folder: DiveFolder,
-    show: LiveFolder,
-    tell: Tell,
-    until: Callable[[], bool],
-) -> None:
-    """Record or replay, and show it, until it ends."""
-    pictures: LiveSource = (
-        RecordedSource(
-            source,
-            folder,
-            rig,
-            fields=settings.fields,
-            timeout=settings.timeout,
-            patience=settings.patience,
-        )
-        if recording is None
-        else ReplayedSource(recording)
-    )
-    finder = LiveFinder(
-        rig, settings.extractor, settings.method, laser=settings.laser, learner=settings.learner
-    )
-    threads = [
-        threading.Thread(target=pictures.run, args=(finder,), daemon=True),
-        threading.Thread(target=finder.run, daemon=True),
-    ]
-    stage = LiveStage(
-        source,
-        pictures,
-        finder,
-        show=show,
-        folder=folder,
-        rig=rig,
-        settings=settings,
-        tell=tell,
-    )
-    for thread in threads:
-        thread.start()
-    _play(stage, until)
-    finder.frames.close()
-    threads[1].join()
-    stage.finish()
-    if pictures.failure is not None:
-        failed = replace(_last_status(show), state="failed", message=str(pictures.failure))
-        with suppress(MurkscanError):  # the disk may be full
-            show.save_status(failed)
-        raise pictures.failure
-    folder.save(replace(folder.record or DiveRecord(source, 0.0), ended=True))
-
-
 def _play(stage: LiveStage, until: Callable[[], bool]) -> None:
     """Show the dive, tick by tick, until its pictures end, or somebody ends it.
 
@@ -173,54 +220,6 @@ def _play(stage: LiveStage, until: Callable[[], bool]) -> None:
         except KeyboardInterrupt:
             # Stopping by hand is how a dive ends; what follows is the scan.
             stage.pictures.stop()
-
-
-def _scan(
-    source: str,
-    recording: AbstractRecording | None,
-    rig: Rig,
-    settings: LiveSettings,
-    project: Project,
-    folder: DiveFolder,
-    show: LiveFolder,
-    *,
-    rig_file: Path | None,
-    executor: AbstractExecutor | None,
-    progress: Progress,
-) -> Project:
-    """Learn from the whole recording, and scan it."""
-    record = folder.record or DiveRecord(source, 0.0)
-    status = _last_status(show)
-    teller = ScanTeller(show, replace(status, state="scanning", message="Scanning the recording."))
-    if recording is None:
-        if not folder.chapters:
-            raise MissingResult(f"{folder.root} holds no recording; run the same command again.")
-        recording = open_recording(
-            folder.chapters, wavelength=rig.wavelength, fields=settings.fields
-        )
-
-    def both(stage: str, done: int, total: int | None) -> None:
-        teller(stage, done, total)
-        progress(stage, done, total)
-
-    made = scan(
-        recording,
-        rig,
-        settings.move(record.began),
-        out=project.root,
-        extractor=settings.extractor,
-        method=settings.method,
-        lasers=settings.lasers,
-        spacing=settings.spacing,
-        rig_file=rig_file,
-        command=project.command,
-        executor=executor,
-        progress=both,
-    )
-    show.save_status(
-        replace(teller.status, state="done", message="The dive is scanned.", scan=None)
-    )
-    return made
 
 
 def _last_status(show: LiveFolder) -> LiveStatus:
