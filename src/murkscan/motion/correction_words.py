@@ -2,6 +2,7 @@
 
 import math
 
+from ..types.lengths import in_mm
 from .adjust.sureness import Sureness
 from .corrected import Correction
 from .sheets_apart import SheetsApart
@@ -24,11 +25,12 @@ _CLOCK = 0.02
 
 def tell_correction(correction: Correction) -> tuple[str, ...]:
     """Say how far the log was corrected, how sure each direction is, and what stayed open."""
-    moved, times = 1e3 * correction.moved, correction.trajectory.times
+    moved, times = correction.moved, correction.trajectory.times
+    usual, most = math.sqrt((moved**2).mean()), float(moved.max())
     lines = [
-        f"corrected from what the scan saw twice, by {math.sqrt((moved**2).mean()):.3g} mm (RMS), "
-        f"{moved.max():.3g} mm at most, {times[moved.argmax()] - times[0]:.1f} s after "
-        "the beginning",
+        f"corrected from what the scan saw twice, by {in_mm(usual, digits=3)} mm (RMS), "
+        f"{in_mm(most, digits=3)} mm at most, {times[moved.argmax()] - times[0]:.1f} s after the "
+        "beginning",
         "known now to (1σ, but for the ends; in brackets by the log alone): "
         + ", ".join(map(_tell_sureness, correction.sureness)),
     ]
@@ -62,8 +64,8 @@ def tell_doubt(correction: Correction) -> str:
 def tell_sheets(apart: SheetsApart) -> str:
     """Say how far two lasers' surfaces lie apart by poses that are not to be changed."""
     far = (
-        f"where both lasers passed, their surfaces lie {1e3 * apart.between.rms:.2g} mm (RMS) "
-        f"apart, {1e3 * apart.between.within_95:.2g} mm at 95 % of the places"
+        f"where both lasers passed, their surfaces lie {in_mm(apart.between.rms)} mm (RMS) "
+        f"apart, {in_mm(apart.between.within_95)} mm at 95 % of the places"
     )
     if apart.is_noise:
         return f"{far}: no more than noise, so poses and calibration agree"
@@ -77,7 +79,7 @@ def tell_sheets(apart: SheetsApart) -> str:
 def _tell_sureness(one: Sureness) -> str:
     if one.unit == "rad":
         return f"{one.name} {math.degrees(one.found):.2g}° ({math.degrees(one.logged):.2g}°)"
-    return f"{one.name} {1e3 * one.found:.2g} mm ({1e3 * one.logged:.2g} mm)"
+    return f"{one.name} {in_mm(one.found)} mm ({in_mm(one.logged)} mm)"
 
 
 def _tell_instruments(correction: Correction) -> list[str]:

@@ -12,6 +12,7 @@ from ..project.results import (
     TriangulateResult,
     ViewResult,
 )
+from ..types.lengths import in_mm
 
 _FEW_STRIPES = 0.5
 """Share of frames without a stripe from which that is worth a word of advice."""
@@ -164,9 +165,9 @@ def _tell_coverage(result: ReportResult) -> list[str]:
 def _tell_trust(result: ReportResult) -> list[str]:
     if result.half_width is None or result.own_half_width is None:
         return []
-    line = f"a typical point is known to ± {1e3 * result.own_half_width:.2g} mm (95 %) by its noise"
+    line = f"a typical point is known to ± {in_mm(result.own_half_width)} mm (95 %) by its noise"
     if result.half_width > result.own_half_width:
-        line += f", to ± {1e3 * result.half_width:.2g} mm with what calibration and motion add"
+        line += f", to ± {in_mm(result.half_width)} mm with what calibration and motion add"
     return [line, *(text[0].lower() + text[1:].rstrip(".") for text in result.unstated)]
 
 
