@@ -12,6 +12,8 @@ from .messages import Message, Tell, Topic, require_extra
 _MAGIC = b"#ROSBAG V2.0\n"
 _MESSAGE, _CHUNK, _CONNECTION = 0x02, 0x05, 0x07
 Fields = dict[bytes, bytes]
+_NEEDED = {_CONNECTION: {b"conn", b"topic"}, _MESSAGE: {b"conn", b"time"}}
+"""What a record of a kind must state."""
 
 
 def read_ros1(path: Path, start: int, topics: dict[int, Topic], tell: Tell) -> Iterator[Message]:
@@ -35,7 +37,7 @@ def read_ros1(path: Path, start: int, topics: dict[int, Topic], tell: Tell) -> I
             whole = [(fields, data)]
             if fields.get(b"op") == bytes([_CHUNK]):
                 whole = _open_chunk(path, fields, data, place, tell)
-            yield from _take(whole, place, topics)
+            yield from _take(_sound(path, whole, place, tell), place, topics)
 
 
 def _read_sized(file: BinaryIO, size: int) -> bytes | None:
@@ -101,12 +103,26 @@ def _cut(data: bytes) -> list[tuple[Fields, bytes]]:
     return records
 
 
+def _sound(
+    path: Path, records: list[tuple[Fields, bytes]], place: int, tell: Tell
+) -> list[tuple[Fields, bytes]]:
+    """Leave out records that lack what their kind has, and say so."""
+    sound = []
+    for fields, data in records:
+        op = fields.get(b"op") or b"\0"
+        if _NEEDED.get(op[0], set()) <= fields.keys() and len(fields.get(b"time", bytes(8))) == 8:
+            sound.append((fields, data))
+        else:
+            tell(f"a record of {path.name} at byte {place:,} is damaged and left out")
+    return sound
+
+
 def _take(
     records: list[tuple[Fields, bytes]], place: int, topics: dict[int, Topic]
 ) -> Iterator[Message]:
     number = 0
     for fields, data in records:
-        op = fields.get(b"op", b"\0")[0]
+        op = (fields.get(b"op") or b"\0")[0]
         if op == _CONNECTION:
             known = _fields(data)
             topics.setdefault(

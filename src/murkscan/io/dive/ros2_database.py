@@ -22,7 +22,8 @@ def read_ros2(path: Path, start: int, topics: dict[int, Topic], tell: Tell) -> I
             for place, topic, time, data in rows:
                 if topic in topics:
                     yield Message(place, 0, topics[topic], time, time, data)
-    except sqlite3.DatabaseError as error:
+    except (sqlite3.DatabaseError, UnicodeDecodeError) as error:
+        # SQLite says what is wrong in the file's own words, which may be no text.
         if not topics:
             raise FormatError(f"{path} is not a bag of ROS 2: {error}.") from error
         tell(f"{path.name} is damaged and read up to there ({error})")
