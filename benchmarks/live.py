@@ -13,6 +13,7 @@ from pathlib import Path
 import av
 import numpy as np
 from harness import Figure, tell
+from studio_streams import SDP
 
 from murkscan.capture.field_order import Fields
 from murkscan.distribute import Processes
@@ -40,15 +41,6 @@ SLOWER = 5
 SPEED = 0.125
 """Of the camera in the scenes [m/s]."""
 SPACING = 5e-3
-SDP = """v=0
-o=- 0 0 IN IP4 127.0.0.1
-s=camera
-c=IN IP4 127.0.0.1
-t=0 0
-m=video {port} RTP/AVP 96
-a=rtpmap:96 H264/90000
-a=fmtp:96 packetization-mode=1
-"""
 
 
 class _Over(Exception):

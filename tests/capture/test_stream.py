@@ -1,6 +1,5 @@
 """Streams over the loopback interface, copied as they come."""
 
-import socket
 import time
 from contextlib import closing
 from fractions import Fraction
@@ -15,26 +14,12 @@ from murkscan.capture import copy_stream, is_stream, open_recording
 from murkscan.capture.stream import StreamTimes
 from murkscan.errors import DeviceError, InputError
 
-SDP = """v=0
-o=- 0 0 IN IP4 127.0.0.1
-s=camera
-c=IN IP4 127.0.0.1
-t=0 0
-m=video {port} RTP/AVP 96
-a=rtpmap:96 H264/90000
-a=fmtp:96 packetization-mode=1
-"""
+from ..streams import SDP, free_port
 
 
 @pytest.fixture
 def port():
-    """A port that nothing uses; even, as RTP wants it."""
-    while True:
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-            probe.bind(("127.0.0.1", 0))
-            number = probe.getsockname()[1]
-        if number % 2 == 0:
-            return number
+    return free_port()
 
 
 def record(source, out, seconds):

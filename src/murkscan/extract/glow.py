@@ -11,6 +11,7 @@ from ..types.background import Noise, StripeShape
 from ..types.frame import Frame
 from ..types.laser import Axis
 from ..types.stripe import Stripe
+from .quantiles import quantiles
 from .scan_lines import ScanLines
 
 _BLOCK = 8
@@ -134,17 +135,8 @@ def _mean_within(
     if values.size == 0:
         empty = np.zeros(np.delete(values.shape, axis))
         return empty, empty
-    middle = _median(values, axis)
+    (middle,) = quantiles(values, (0.5,), axis=axis)
     variance = noise.variance(middle)
     keep = np.abs(values - middle) < np.maximum(3.0 * np.sqrt(variance), 1.5)
     number = np.maximum(keep.sum(axis=axis), 1)
     return np.where(keep, values, 0.0).sum(axis=axis) / number, number.astype(float)
-
-
-def _median(values: Float[np.ndarray, "..."], axis: int) -> Float[np.ndarray, "..."]:
-    """Give the median of what is known, as `np.nanmedian` does by masked arrays; keep the axis."""
-    ordered = np.sort(values, axis=axis)  # NaN comes last
-    last = np.maximum(np.isfinite(values).sum(axis=axis, keepdims=True) - 1, 0)
-    below = np.take_along_axis(ordered, last // 2, axis=axis)
-    above = np.take_along_axis(ordered, (last + 1) // 2, axis=axis)
-    return (below + above) / 2

@@ -10,6 +10,7 @@ from jaxtyping import Bool, Float
 from .._kernels.ridges import match_ridges, pool_along
 from ..types.arrays import Mask
 from .markov import Markov
+from .quantiles import quantiles
 from .ridges import Marks, Ridges
 
 _STANDS, LEAST = 0.6, 3.0
@@ -146,7 +147,7 @@ class Standing:
     def are_moving(self) -> Marks:
         """Tell which move to and fro by more than noise moves a ridge: no dirt does."""
         seen = np.where(self.stand, np.where(self.is_there, self.moves, np.nan), 0.0)
-        low, high = _quantiles(seen, (_SIGMA[0], _SIGMA[2]))
+        low, high = quantiles(seen, (_SIGMA[0], _SIGMA[2]))[:, 0]
         least = _STIR + self.ridges.grains / np.maximum(self.ridges.heights, 1.0)
         return self.stand & (0.5 * (high - low) > least)
 
@@ -154,7 +155,7 @@ class Standing:
         """Weigh by how little each height varies over frames beside the noise: high for dirt."""
         seen = np.where(self.is_there, self.heights, np.nan)
         seen = np.where(self.stand, seen, 0.0)
-        low, middle, high = _quantiles(seen, _SIGMA)
+        low, middle, high = quantiles(seen, _SIGMA)[:, 0]
         middle = np.maximum(middle, 1.0)
         square = middle**2
         excess = np.clip((0.5 * (high - low)) ** 2 - 1.0, -1.0, _MOST_FLICKER**2 * square)
@@ -188,19 +189,3 @@ class Standing:
         own = match_ridges(frame.positions, frame.counts, frame.grains, *places, 2.0)[0] > 0
         posterior = markov.follow_some(frame, ~frame.are_within(own, frame.reach))
         return np.any(posterior > _SURE, axis=1)
-
-
-def _quantiles(
-    values: Float[np.ndarray, "frames lines most"], shares: tuple[float, ...]
-) -> Float[np.ndarray, "shares lines most"]:
-    """Give quantiles over frames of what is known, as `np.nanquantile` does column by column.
-
-    Values that are not known are NaN; where none is, the quantile is.
-    """
-    ordered = np.sort(values, axis=0)  # NaN comes last
-    last = np.maximum(np.isfinite(values).sum(axis=0) - 1, 0)
-    place = np.multiply.outer(shares, last)
-    low = np.floor(place).astype(int)
-    below = np.take_along_axis(ordered, low, axis=0)
-    above = np.take_along_axis(ordered, np.minimum(low + 1, last), axis=0)
-    return below + (place - low) * (above - below)
