@@ -64,16 +64,30 @@ def splat_discs(
         image: f4; the light is added here.
     """
     height, width = image.shape
+    across, down = np.empty(width), np.empty(height)
     for i in range(len(amounts)):
         u, v, scale = pixels[i, 0], pixels[i, 1], 1.0 / (math.sqrt(2.0) * sigmas[i])
         if not (abs(u) < 1e6 and abs(v) < 1e6):
             continue
         reach = math.ceil(_REACH * sigmas[i] + 0.5)
-        first, last = max(round(u) - reach, 0), min(round(u) + reach, width - 1)
-        for row in range(max(round(v) - reach, 0), min(round(v) + reach, height - 1) + 1):
-            share = math.erf((row + 0.5 - v) * scale) - math.erf((row - 0.5 - v) * scale)
-            left = math.erf((first - 0.5 - u) * scale)
+        first, last = _share_out(u, reach, scale, across)
+        top, bottom = _share_out(v, reach, scale, down)
+        for row in range(top, bottom + 1):
+            amount = amounts[i] * down[row]
             for column in range(first, last + 1):
-                right = math.erf((column + 0.5 - u) * scale)
-                image[row, column] += amounts[i] * 0.25 * share * (right - left)
-                left = right
+                image[row, column] += amount * across[column]
+
+
+@numba.njit(cache=True, nogil=True)
+def _share_out(at: float, reach: int, scale: float, shares: np.ndarray) -> tuple[int, int]:
+    """Write which share of a Gaussian falls on each pixel of a line; give the first and the last.
+
+    A round Gaussian is the product of two, so that a disc costs its width and not its area.
+    """
+    first, last = max(round(at) - reach, 0), min(round(at) + reach, len(shares) - 1)
+    left = math.erf((first - 0.5 - at) * scale)
+    for k in range(first, last + 1):
+        right = math.erf((k + 0.5 - at) * scale)
+        shares[k] = 0.5 * (right - left)
+        left = right
+    return first, last

@@ -8,8 +8,10 @@ import numpy as np
 from jaxtyping import Float
 
 from ..errors import InputError
-from ..types.arrays import Directions, Points, Scalars
+from ..geometry.plane_fit import fit_plane
+from ..types.arrays import Directions, Mask, Points, Scalars
 from ..types.laser import Fan, FanCoordinates, Laser
+from ..types.plane import Plane
 from ..types.rays import Rays
 from .lamp import Lamp
 from .sheet import as_fan, locate_on_fan, trace_fan
@@ -18,6 +20,9 @@ _NUM_ANGLES = 4001
 """Rays by which the fan's spreading is tabled."""
 _EDGE = 0.02
 """Share of a Powell fan's half width over which it fades at its ends."""
+_SLAB = 3.0
+"""Distance from the laser within which its sheet is known to keep to a slab [m]; farther out light
+is lost in any water with particles."""
 _STREAK = math.radians(0.25)
 """Angle from one streak of a fan to the next."""
 _STREAKS = np.random.default_rng(532).standard_normal(1024) * math.sqrt(1.5)
@@ -106,6 +111,17 @@ class Beam:
         """Find angle, range and distance from the sheet of points in the camera frame [m]."""
         return locate_on_fan(points, self.fan, self.index)
 
+    def may_light(self, points: Points, times: float) -> Mask:
+        """Tell which points may lie within so many standard deviations of the sheet's middle.
+
+        Quick, and never wrong about a point in the light: a window bends the sheet by millimetres,
+        so that what lies far from its plane need not be located.
+        """
+        plane, bend = self._slab
+        is_far = np.linalg.norm(points - self.fan.origin, axis=1) > _SLAB
+        away = np.abs(plane.distance_to(points))
+        return is_far | (away < bend + times * self.thickness(np.array([_SLAB])))
+
     def directions(self, angles: Scalars) -> Directions:
         """Give the direction in which light travels at these angles [rad], by the table."""
         return self._read(self._rays.directions, angles)
@@ -159,6 +175,14 @@ class Beam:
     @cached_property
     def _angles(self) -> Scalars:
         return np.linspace(-self.fan.half_angle, self.fan.half_angle, _NUM_ANGLES)
+
+    @cached_property
+    def _slab(self) -> tuple[Plane, float]:
+        """The plane nearest the sheet, and how far the sheet bends away from it within `_SLAB`."""
+        rays = self.rays(np.linspace(-self.fan.half_angle, self.fan.half_angle, _NUM_ANGLES // 10))
+        sheet = np.concatenate([rays.origins, rays.origins + _SLAB * rays.directions])
+        fit = fit_plane(sheet, tolerance=np.inf)
+        return fit.plane, float(np.abs(fit.residuals).max())
 
     @cached_property
     def _rays(self) -> Rays:

@@ -17,8 +17,8 @@ from .water_blur import WaterBlur, Weights
 _BEYOND = 0.7
 """How far beyond the picture light counts, as the tangent of an angle: with 0.46 the glow is up to
 8 % too dark."""
-_DARK = 20.0
-"""Attenuation lengths beyond which no light is worth spreading."""
+DARK = 20.0
+"""Attenuation lengths beyond which no light is worth spreading, or drawing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,6 +88,6 @@ def _weigh(spread: Spread, view: SheetView, attenuation: float) -> Weights:
     weights = np.zeros((len(view.angle), len(spread.widths)))
     ways = view.camera_range + view.laser_range
     with np.errstate(invalid="ignore"):
-        seen = np.flatnonzero(ways * attenuation < _DARK)
+        seen = np.flatnonzero(ways * attenuation < DARK)
     weights[seen] = spread.weights(view.laser_range[seen], view.camera_range[seen])
     return weights

@@ -88,7 +88,7 @@ def _draw_snow(
     scene: Scene, laser: LaserView, view: Rendering, mask: Picture, density: float, *, time: float
 ) -> Picture:
     image = np.zeros_like(mask)
-    near = view.pose @ places_in_light(laser, mask)
+    near = view.pose @ places_in_light(laser, mask, scene.attenuation)
     snow = strew(scene.particles, density, near, time=float(time), seed=scene.seed)
     draw_snow(view, snow, scene.particles.albedo, scene.sensor.psf, mask, image)
     return blur_lens(image, scene.sensor.composite, scene.sensor.field_blur)

@@ -6,7 +6,7 @@ import numpy as np
 
 from .._kernels.splat import splat_discs
 from ..types.arrays import Pixels, Points
-from .laser_view import LaserView
+from .laser_view import DARK, LaserView
 from .particles import Particles, Snow
 from .stripe_image import Picture, Rendering
 
@@ -37,12 +37,13 @@ def density_for(particles: Particles, laser: LaserView, mask: Picture, reach: fl
     return particles.per_frame / float(volume) if volume > 0 else 0.0
 
 
-def places_in_light(laser: LaserView, mask: Picture) -> Points:
+def places_in_light(laser: LaserView, mask: Picture, attenuation: float) -> Points:
     """Give places of the sheet, in the camera frame [m], around which particles may be seen."""
     steps = (_ALONG, _ACROSS) if laser.scan_lines.laser.axis == "y" else (_ACROSS, _ALONG)
     tried = np.arange(mask.size).reshape(mask.shape)[:: steps[0], :: steps[1]]
-    points = laser.view[tried[mask[:: steps[0], :: steps[1]] > 0.0]].points
-    return points[np.isfinite(points[:, 0])]  # at a pixel's edge light may be, and no sheet
+    seen = laser.view[tried[mask[:: steps[0], :: steps[1]] > 0.0]]
+    # At a pixel's edge light may be, and no sheet: NaN is not in light.
+    return seen.points[attenuation * (seen.laser_range + seen.camera_range) < DARK]
 
 
 def draw_snow(
@@ -59,6 +60,8 @@ def draw_snow(
         image: Rows are v; radiance [W/m²/sr] is added.
     """
     points = scene.pose.inverse() @ snow.points
+    near = np.flatnonzero(scene.beam.may_light(points, _DRAWN))
+    points, diameters = points[near], snow.diameters[near]
     where = scene.beam.locate(points)
     cut = np.flatnonzero(
         np.abs(where.distance) < _DRAWN * scene.beam.thickness(np.nan_to_num(where.range))
@@ -68,7 +71,7 @@ def draw_snow(
     share = _look_up(mask, pixels)
     known = np.flatnonzero(np.isfinite(across) & (share > 0))
     shown = cut[known]
-    points, diameters, where = points[shown], snow.diameters[shown], where[shown]
+    points, diameters, where = points[shown], diameters[shown], where[shown]
     pixels, share = pixels[known], share[known]
     ranges = np.linalg.norm(
         points - scene.scan_lines.rays(across[known], along[known]).origins, axis=1

@@ -19,6 +19,8 @@ _CUT = 0.5, 0.8
 """The same of a scratch, which throws it aside."""
 _ASIDE = 0.05
 """How far dirt throws light aside [rad], 1σ: grains of 10 µm diffract green light by λ/d."""
+_FINE = 4.0
+"""Blur on the smaller picture [its px], 1σ: its pixels widen it by less than one per cent."""
 _KEPT = 0.8
 """Share of what dirt takes that it throws aside; the rest it absorbs."""
 _SLOPE = 0.03
@@ -74,8 +76,18 @@ class WindowView:
         """Give what is left of light behind the window, with what dirt throws aside."""
         if self.aside == 0:
             return light
-        around = blur_lens(light, self.aside, self.aside)
+        around = _blur_broadly(light, self.aside)
         return light * self.transmission + np.float32(_KEPT) * (1 - self.transmission) * around
+
+
+def _blur_broadly(light: Picture, sigma: float) -> Picture:
+    """Blur by many pixels on a smaller picture: what is so broad has no details to lose."""
+    height, width = light.shape
+    times = max(int(sigma / _FINE), 1)
+    size = -(-width // times), -(-height // times)
+    small = cv2.resize(light, size, interpolation=cv2.INTER_AREA)
+    own = sigma * size[0] / width
+    return cv2.resize(blur_lens(small, own, own), (width, height), interpolation=cv2.INTER_LINEAR)
 
 
 def view_window(
