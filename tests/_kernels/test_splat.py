@@ -19,9 +19,9 @@ def test_a_disc_has_its_light_its_place_and_its_width(sigma):
     image = draw(30.3, 25.6, sigma)
     rows, columns = np.mgrid[:SIDE, :SIDE]
     assert image.sum() == pytest.approx(3.0, rel=1e-5)
-    assert (image * columns).sum() / 3 == pytest.approx(30.3, abs=0.1 * sigma)
-    assert (image * rows).sum() / 3 == pytest.approx(25.6, abs=0.1 * sigma)
-    if sigma >= 1:
+    if sigma >= 1:  # a narrower one's place is lost within its pixel
+        assert (image * columns).sum() / 3 == pytest.approx(30.3, abs=1e-3)
+        assert (image * rows).sum() / 3 == pytest.approx(25.6, abs=1e-3)
         width = (image * (columns - 30.3) ** 2).sum() / 3 - 1 / 12
         assert width == pytest.approx(sigma**2, rel=1e-3)
 

@@ -8,7 +8,6 @@ from murkscan.types.laser import Fan
 
 from .ports import PORTS, WATER, unit
 
-
 TIMES = 4.0
 
 
