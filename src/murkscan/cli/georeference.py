@@ -1,7 +1,8 @@
-"""murkscan georeference: lay a scan on control points."""
+"""murkscan georeference: lay a scan on control points, on the Earth or on a ship."""
 
 from pathlib import Path
-from typing import Annotated
+from shlex import quote
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
@@ -10,21 +11,33 @@ from .paths import ScanFolder
 from .typed import WORDS
 from .words import print_table, tell
 
+if TYPE_CHECKING:
+    from ..project import GeoreferenceResult
+    from ..types.hull import HullFrame
 
-def _require_control(_: object, path: Path) -> None:
-    if not path.exists():
+
+def _require_control(_: object, path: Path | None) -> None:
+    if path is not None and not path.exists():
         raise InputError(f"There is no file of control points at {path}; check its spelling.")
+
+
+Points = Annotated[Path | None, Parameter(validator=_require_control)]
 
 
 def georeference(
     out: ScanFolder,
     *,
-    control: Annotated[Path, Parameter(validator=_require_control)],
-    crs: str,
+    control: Points = None,
+    crs: str | None = None,
+    hull: Points = None,
+    frame_spacing_mm: float | None = None,
+    frames_from: Literal["stern", "bow"] | None = None,
+    heights_above: Literal["keel", "waterline"] | None = None,
 ) -> None:
-    """Lay a scan on control points; what is exported then lies in their coordinate system.
+    """Lay a scan on control points, of a coordinate system or of a ship.
 
-    The model itself stays in its own world, in which measures are taken.
+    Measures, walls and the page then tell places there, and what is exported lies there. The model
+    itself stays in its own world.
 
     Parameters
     ----------
@@ -35,12 +48,52 @@ def georeference(
         where each point lies on the model, as read off view/index.html.
     crs
         The coordinate system, as EPSG:25832, or with that of the heights as EPSG:25832+7837.
+    hull
+        Instead of these: a table of three points or more of a ship, with the columns name, frame
+        (or from_bow_m), height_m, from_centreline_m, side (port, starboard, centreline), sigma_mm,
+        and x_m, y_m, z_m.
+    frame_spacing_mm
+        Distance between two frames of the ship [mm]; without it the table has from_bow_m.
+    frames_from
+        Where frame 0 is; stern unless said.
+    heights_above
+        What heights on the ship count from; keel unless said.
     """
     from ..project import Project
+    from ..survey.georeference import OnGrid
     from ..survey.georeference import georeference as lay
 
-    result = lay(Project(out, WORDS.get()), control, crs)
-    columns = ("control point", "east", "north", "up [mm]", "sigma [mm]", "of its σ")
+    ship = (frame_spacing_mm, frames_from, heights_above)
+    if hull is not None and control is None and crs is None:
+        frame = _read_hull(frame_spacing_mm, frames_from or "stern", heights_above or "keel")
+        result = lay(Project(out, WORDS.get()), hull, frame)
+    elif hull is None and control is not None and crs is not None and not any(ship):
+        result = lay(Project(out, WORDS.get()), control, OnGrid(crs))
+    else:
+        raise InputError(
+            "Give --control and --crs, for a place on the Earth; or for a ship --hull, with "
+            "--frame-spacing-mm where its table has frames."
+        )
+    _print(out, result)
+
+
+def _read_hull(
+    spacing_mm: float | None,
+    frames_from: Literal["stern", "bow"],
+    heights_above: Literal["keel", "waterline"],
+) -> "HullFrame":
+    from ..types.hull import HullFrame
+
+    if spacing_mm is None:
+        return HullFrame(None, "bow", heights_above)
+    if not 0 < spacing_mm < float("inf"):
+        raise InputError(f"--frame-spacing-mm must be above 0, got {spacing_mm:g}.")
+    return HullFrame(spacing_mm / 1e3, frames_from, heights_above)
+
+
+def _print(out: Path, result: "GeoreferenceResult") -> None:
+    axes = ("east", "north") if result.hull is None else ("aft", "to starboard")
+    columns = ("control point", *axes, "up [mm]", "sigma [mm]", "of its σ")
     rows = [
         (
             one.name,
@@ -55,4 +108,8 @@ def georeference(
         tell("remark", remark)
     tell("made", f"the way from the model to {result.crs}: {out / 'georeference' / 'stage.json'}")
     tell("quality", f"residuals of {1e3 * result.rms:.1f} mm (RMS of their lengths)")
-    tell("next", f"murkscan cloud {out} --export FILE.laz, which then lies in it")
+    folder = quote(str(out))
+    tell("next", f"murkscan cloud {folder} --export FILE.laz, which then lies in it")
+    if result.hull is not None:
+        station = "--from-bow-m 12.5" if result.hull.frame_spacing is None else "--at-frame 42"
+        tell("next", f"murkscan measure {folder} section {station}, across the ship there")

@@ -16,7 +16,7 @@ from .measure_part import (
     read_place,
     read_plane,
 )
-from .options import Place
+from .options import MaybePlace, Place
 from .typed import WORDS
 
 if TYPE_CHECKING:
@@ -121,8 +121,10 @@ def cylinder(out: CloudScan, *, part: PartFlags = PartFlags(), name: Name = "cyl
 def section(
     out: MeshScan,
     *,
-    point_m: Place,
-    normal: Place,
+    point_m: MaybePlace = None,
+    normal: MaybePlace = None,
+    at_frame: float | None = None,
+    from_bow_m: float | None = None,
     formats: str = "svg,csv",
     name: str = "section",
 ) -> None:
@@ -134,19 +136,29 @@ def section(
         A point of the plane, as X,Y,Z [m].
     normal
         Its normal, as X,Y,Z of any length: 0,1,0 cuts across y.
+    at_frame
+        Instead of these: the frame of a ship, of a scan that was laid on its points.
+    from_bow_m
+        Or the distance from the bow [m], where these tell no frames.
     formats
         What to write of dxf, svg and csv.
     name
         What to call it: OUT/measure/NAME.json, .svg …
     """
     from ..project import Project
-    from ..survey.measure import measure_cut
+    from ..survey.measure import measure_cut, plane_across_ship
 
     chosen = formats.split(",")
     if unknown := set(chosen) - {"dxf", "svg", "csv"}:
         raise InputError(f"--formats takes dxf, svg and csv, got {', '.join(sorted(unknown))}.")
-    project = Project(out, WORDS.get())
-    found = measure_cut(project, read_plane(point_m, normal), name=name, formats=chosen)
+    project, stations = Project(out, WORDS.get()), (at_frame, from_bow_m)
+    if stations != (None, None) and (point_m, normal) == (None, None):
+        plane = plane_across_ship(project, frame=at_frame, from_bow=from_bow_m)
+    elif point_m is not None and normal is not None and stations == (None, None):
+        plane = read_plane(point_m, normal)
+    else:
+        raise InputError("Give --point-m and --normal, or of a ship --at-frame or --from-bow-m.")
+    found = measure_cut(project, plane, name=name, formats=chosen)
     print_measurement(out, name, found, suffixes=tuple(chosen))
 
 

@@ -108,12 +108,14 @@ def print_measurement(
     out: Path, name: str, found: "Measurement", *, suffixes: tuple[str, ...] = ()
 ) -> None:
     """Print a measurement as a table, what its intervals lack, and where it was written."""
-    from ..project import Project
+    from ..project import Project, load_georeference
     from ..project.unstated import list_unstated
 
     rows = [_row(quantity) for quantity in found.quantities]
     columns = (found.kind, "value", "±95%", "1σ own", "1σ common", "unit")
     print_table("", columns, rows)
+    if found.places and (place := load_georeference(Project(out))) is not None:
+        tell("place", *(f"{what}: {place.describe(at)}" for what, at in found.places.items()))
     for text in (*found.remarks, *list_unstated(Project(out))):
         say(text)
     tell("meaning", _MEANING)

@@ -46,7 +46,19 @@ class ControlFit:
     """Whether residuals so large come by chance less than once in a thousand."""
 
 
-def fit_control(model: Points, control: Points, sigma: Scalars) -> ControlFit:
+@dataclass(frozen=True)
+class Mixup:
+    """What people exchange in tables of control points."""
+
+    words: str = "easting and northing exchanged: exchange the two columns"
+    """The two, and the cure."""
+    undo: tuple[tuple[float, ...], ...] = ((0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0))
+    """Matrix that exchanges them."""
+
+
+def fit_control(
+    model: Points, control: Points, sigma: Scalars, *, mixup: Mixup = Mixup()
+) -> ControlFit:
     """Find the turn and the shift that lay a model on control points, by least squares.
 
     Args:
@@ -54,6 +66,7 @@ def fit_control(model: Points, control: Points, sigma: Scalars) -> ControlFit:
         control: Where they lie in the target's frame [m], near its origin.
         sigma: Standard deviation of each along each axis [m], above 0; that of the place on the
             model included.
+        mixup: What may have been exchanged in the control, to be told.
 
     Raises:
         NotEnoughData: There are fewer than three points.
@@ -71,7 +84,7 @@ def fit_control(model: Points, control: Points, sigma: Scalars) -> ControlFit:
     _check_sizes(model, control, sigma)
     pose = _align(model, control, sigma)
     residuals = control - pose @ model
-    _check_agreement(model, control, sigma, residuals)
+    _check_agreement(model, control, sigma, residuals, mixup)
     moves = _moves(pose @ model)
     weights = 1 / sigma**2
     inverse = np.linalg.inv(np.einsum("nij,n,nik->jk", moves, weights, moves))
@@ -137,17 +150,19 @@ def _check_sizes(model: Points, control: Points, sigma: Scalars) -> None:
         )
 
 
-def _check_agreement(model: Points, control: Points, sigma: Scalars, residuals: Points) -> None:
+def _check_agreement(
+    model: Points, control: Points, sigma: Scalars, residuals: Points, mixup: Mixup
+) -> None:
     """Refuse points that are not those of the model."""
     worst = float(np.linalg.norm(residuals, axis=1).max())
     if worst < max(_WRONG * _extent(control), _FIRM * sigma.max()):
         return
-    swapped = control[:, [1, 0, 2]]
+    swapped = control @ np.array(mixup.undo).T
     left = np.linalg.norm(swapped - _align(model, swapped, sigma) @ model, axis=1).max()
     if left < _BETTER * worst:
         raise InputError(
             f"The model misses a control point by {worst:.3g} m, but only by {left:.2g} m with "
-            "easting and northing exchanged: exchange the two columns."
+            f"{mixup.words}."
         )
     number = int(np.linalg.norm(residuals, axis=1).argmax()) + 1
     raise InputError(

@@ -44,7 +44,8 @@ def measure_distance(sample: Sample, ends: Points) -> Measurement:
     )
     details = {"from_m": points[0].tolist(), "to_m": points[1].tolist()}
     remarks = remark_on_ends(ends, points, quantity.half_width)
-    return Measurement("distance", (quantity,), details, remarks)
+    places = dict(zip(("from", "to"), points, strict=True))
+    return Measurement("distance", (quantity,), details, remarks, places)
 
 
 def _nearest(sample: Sample, end: Vector) -> int:

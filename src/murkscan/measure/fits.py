@@ -1,7 +1,7 @@
 """Plane, sphere and cylinder through a part of a scan."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from ..geometry.plane_fit import fit_plane
 from ..geometry.shape import AnyShape
 from ..geometry.shape_fit import ShapeFit, refine_shape, require_points
 from ..geometry.sphere_fit import fit_sphere
+from ..types.arrays import Vector
 from ..types.measurement import Measurement
 from ..types.plane import Plane, span_plane
 from ..types.quantity import Quantity
@@ -39,7 +40,7 @@ def measure_plane(sample: Sample) -> Measurement:
     how[0] = [*(-(sides @ fit.middle)), 1.0]
     values = dict(zip("xyz", plane.normal.tolist(), strict=True))
     named = {"distance": plane.distance} | {f"normal_{axis}": n for axis, n in values.items()}
-    return _tell("plane", fit, trust, sample, named, ("m", "", "", ""), how)
+    return _tell("plane", fit, trust, sample, named, ("m", "", "", ""), how, {"middle": fit.middle})
 
 
 def trust_plane(sample: Sample) -> tuple[ShapeFit[Plane], FitUncertainty]:
@@ -75,7 +76,7 @@ def measure_sphere(sample: Sample) -> Measurement:
     how = np.zeros((5, fit.slopes.shape[1]))
     how[0, 3], how[1, 3] = 1, 2
     how[2:, :3] = np.eye(3)
-    return _tell("sphere", fit, trust, sample, values, ("m",) * 5, how)
+    return _tell("sphere", fit, trust, sample, values, ("m",) * 5, how, {"centre": sphere.centre})
 
 
 def trust_sphere(sample: Sample) -> tuple[ShapeFit[Sphere], FitUncertainty]:
@@ -117,7 +118,8 @@ def measure_cylinder(sample: Sample) -> Measurement:
     how[2:5] -= np.outer(cylinder.axis / cylinder.axis[most], how[2 + most])
     how[2 + most] = 0.0
     units = ("m",) * 5 + ("",) * 3
-    return _tell("cylinder", fit, trust_fit(fit, sample), sample, values, units, how)
+    trust, places = trust_fit(fit, sample), {"on the axis": cylinder.point}
+    return _tell("cylinder", fit, trust, sample, values, units, how, places)
 
 
 def _require_profiles(sample: Sample, what: str) -> None:
@@ -139,6 +141,7 @@ def _tell(
     values: dict[str, float],
     units: Sequence[str],
     how: LinearMap,
+    places: Mapping[str, Vector],
 ) -> Measurement:
     """Say what a fit gave, and how well its points agree."""
     spread = fit.rms / math.sqrt(2 * trust.degrees)
@@ -149,4 +152,4 @@ def _tell(
         "independent_patches": round(trust.degrees + fit.slopes.shape[1]),
     }
     quantities = (*trust.as_quantities(values, units, how), rms)
-    return Measurement(kind, quantities, details, remark_on_fit(kind, fit, sample))
+    return Measurement(kind, quantities, details, remark_on_fit(kind, fit, sample), places)

@@ -15,6 +15,9 @@ from ..types.quantity import Quantity
 from .noise import noise_at
 from .sample import Sample
 
+_LEVEL = 0.95
+"""Cosine of the angle between a plane's normal and up from which the plane counts as level."""
+
 
 @dataclass(frozen=True, eq=False)
 class CrossSection:
@@ -24,6 +27,8 @@ class CrossSection:
     """The plane, in the world."""
     lines: tuple[Float[np.ndarray, "_ 3"], ...]
     """Each line's corners in order, in the world [m]; a closed one ends where it begins."""
+    up: Vector | None = None
+    """The direction that the drawing has upwards, as nearly as it can; None: the world's own."""
 
     @property
     def origin(self) -> Vector:
@@ -35,22 +40,29 @@ class CrossSection:
     def axes(self) -> np.ndarray:
         """Directions, in the world, of the drawing's x and y; a row each.
 
-        x lies as nearly as it can along the world's x (or y, where the plane lies across x); y
-        points where z points as nearly as it can, or else where y points.
+        Where a direction is up, y points there, and x to the right of whom the normal points to.
+        Otherwise x lies as nearly as it can along the world's x (or y, where the plane lies across
+        x); y points where z points as nearly as it can, or else where y points.
         """
-        return _drawing_axes(self.plane.normal)
+        normal = self.plane.normal
+        if self.up is not None and abs(normal @ self.up) < _LEVEL:
+            right = np.cross(self.up, normal)
+            right /= np.linalg.norm(right)
+            return np.stack([right, np.cross(normal, right)])
+        return _drawing_axes(normal)
 
     def as_drawing(self) -> tuple[np.ndarray, ...]:
         """Give each line in the drawing's x and y, from `origin` [m]; n 2 each."""
         return tuple((line - self.origin) @ self.axes.T for line in self.lines)
 
 
-def cut_section(mesh: Mesh, plane: Plane) -> CrossSection:
+def cut_section(mesh: Mesh, plane: Plane, *, up: Vector | None = None) -> CrossSection:
     """Cut a surface by a plane.
 
     Args:
         mesh: The surface.
         plane: The plane, in the same frame.
+        up: The direction that the drawing has upwards, of unit length.
 
     Raises:
         NotEnoughData: The plane does not meet the surface.
@@ -66,7 +78,7 @@ def cut_section(mesh: Mesh, plane: Plane) -> CrossSection:
             "a point on the surface with --point-m."
         )
     edges, places = _crossings(mesh, heights, above, cut)
-    return CrossSection(plane, tuple(places[order] for order in _join(edges)))
+    return CrossSection(plane, tuple(places[order] for order in _join(edges)), up)
 
 
 def measure_section(
@@ -94,7 +106,8 @@ def measure_section(
         "x_axis": section.axes[0].tolist(),
         "y_axis": section.axes[1].tolist(),
     }
-    return Measurement("section", tuple(quantities), details), sigmas
+    places = {"middle": section.origin}
+    return Measurement("section", tuple(quantities), details, places=places), sigmas
 
 
 def _extent(name: str, values: Scalars, axis: Vector, numbers: Indices, sample: Sample) -> Quantity:

@@ -57,7 +57,10 @@ def measure_step(first: Sample, second: Sample) -> Measurement:
     details = {"points": len(points), "normal": normal.tolist(), "degrees": trust.degrees}
     samples = zip(parts, (first, second), strict=True)
     remarks = [text for (fit, _), s in samples for text in remark_on_fit("plane", fit, s)]
-    return Measurement("step", (step, _angle(parts)), details, tuple(dict.fromkeys(remarks)))
+    places = {"first": parts[0][0].middle, "second": parts[1][0].middle}
+    return Measurement(
+        "step", (step, _angle(parts)), details, tuple(dict.fromkeys(remarks)), places
+    )
 
 
 def _both_planes(points: Points, normal: Vector, is_second: Scalars) -> tuple[Scalars, np.ndarray]:

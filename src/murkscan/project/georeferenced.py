@@ -1,4 +1,4 @@
-"""Where a scan's folder says that its model lies on the Earth."""
+"""Where a scan's folder says that its model lies on the Earth, or on a ship."""
 
 import numpy as np
 
@@ -44,4 +44,5 @@ def as_georeference(result: GeoreferenceResult) -> Georeference:
         result.scale,
         Pose(np.array(result.rotation), np.array(result.translation)),
         np.array(result.covariance_of_turn_and_shift),
+        result.hull,
     )

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..types.arrays import Indices, SignedFrameNumbers
 from ..types.background import Attenuation
+from ..types.hull import HullFrame
 from ..types.part_note import Skipped as Skipped
 
 if TYPE_CHECKING:
@@ -275,6 +276,8 @@ class GeoreferenceResult:
     """Factor by which the residuals are larger than the stated sigmas; the covariance has it."""
     remarks: tuple[str, ...] = ()
     """What is odd, with its cure; sentences for the user."""
+    hull: HullFrame | None = None
+    """Of a model that was laid on a ship: the axes are then aft, to starboard and up."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Where the model lies on the Earth, and how well it meets its control points."""
+"""Where the model lies on the Earth or on a ship, and how well it meets its control points."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ class ControlRow:
 
     name: str
     residual: tuple[float, ...]
-    """Control point less model, along east, north and up [m]."""
+    """Control point less model, along east, north and up, or the ship's axes [m]."""
     sigma: float
     """As its table states it [m]."""
 
@@ -28,6 +28,8 @@ class Placed:
     rms: float
     """Root mean square of the residuals' lengths [m]."""
     remarks: Sequence[str]
+    on_ship: bool = False
+    """Whether the axes are a ship's: aft, to starboard and up."""
 
 
 def placed_sections(placed: Placed | None) -> list[Section]:
@@ -36,13 +38,16 @@ def placed_sections(placed: Placed | None) -> list[Section]:
         return []
     text = (
         f"The model was laid on {len(placed.rows)} control points in {placed.crs}. What is "
-        "exported lies there; pictures, measures and the model's page stay in the model's own "
-        f"world. The residuals are {1e3 * placed.rms:.2f} mm (RMS of their lengths)."
+        "exported lies there, and measures, walls and the model's page tell places there; numbers "
+        "called x, y and z stay in the model's own world. The residuals are "
+        f"{1e3 * placed.rms:.2f} mm (RMS of their lengths)."
     )
     rows = [(one.name, *_as_mm(one.residual), *_as_mm((one.sigma,))) for one in placed.rows]
-    head = ("control point", "east [mm]", "north [mm]", "up [mm]", "stated sigma [mm]")
+    axes = ("aft", "to starboard") if placed.on_ship else ("east", "north")
+    head = ("control point", *(f"{axis} [mm]" for axis in (*axes, "up")), "stated sigma [mm]")
     odd = [Note(remark, "warning") for remark in placed.remarks]
-    return [Section("Place on the Earth", [Note(text), *odd, Table(rows, head=head)])]
+    title = "Place on the ship" if placed.on_ship else "Place on the Earth"
+    return [Section(title, [Note(text), *odd, Table(rows, head=head)])]
 
 
 def placed_as_plain(placed: Placed | None) -> dict[str, Any] | None:
@@ -56,7 +61,9 @@ def placed_as_plain(placed: Placed | None) -> dict[str, Any] | None:
         "control_points": [
             {
                 "name": one.name,
-                "east_north_up_mm": [1e3 * part for part in one.residual],
+                "aft_starboard_up_mm" if placed.on_ship else "east_north_up_mm": [
+                    1e3 * part for part in one.residual
+                ],
                 "sigma_mm": 1e3 * one.sigma,
             }
             for one in placed.rows

@@ -19,6 +19,12 @@ _COLUMNS = {
     "area_m2": "area [m²]",
     "easting_m": "easting [m]",
     "northing_m": "northing [m]",
+    "frame": "frame",
+    "from_bow_m": "from the bow [m]",
+    "above_keel_m": "above the keel [m]",
+    "above_waterline_m": "above the waterline [m]",
+    "side": "side",
+    "from_centreline_m": "from the centreline [m]",
 }
 """Keys of an anomaly, and what stands above them."""
 

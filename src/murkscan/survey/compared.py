@@ -65,6 +65,7 @@ def compare_models(
         )
         return Compared(models, text, None)
     second = second.moved(alignment.target_from_source, first.views)
+    second = replace(second, place=first.place)
     words = describe_alignment(alignment, whose=first.name)
     relation = f"{second.name} was laid on {first.name}: {words}."
     return Compared([first, second], relation, AlignmentResult.from_alignment(alignment))

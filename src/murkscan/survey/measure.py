@@ -2,6 +2,9 @@
 
 from collections.abc import Callable, Collection
 
+import numpy as np
+
+from ..errors import InputError, MissingResult
 from ..io.section_csv import save_section_csv
 from ..io.section_dxf import save_section_dxf
 from ..io.section_svg import save_section_svg
@@ -17,7 +20,7 @@ from ..measure import (
     measure_volume,
     trust_plane,
 )
-from ..project import Project, StageFiles
+from ..project import Project, StageFiles, load_georeference
 from ..types.measurement import Measurement
 from ..types.plane import Plane
 from .measured import keep_measurement, measuring
@@ -72,7 +75,7 @@ def measure_cut(
     def write(files: StageFiles) -> dict[str, object]:
         if "csv" in formats:
             with files.making(f"{name}.csv") as path:
-                save_section_csv(path, drawing, section.lines, sigmas)
+                save_section_csv(path, drawing, section.lines, sigmas, place=place)
         if "svg" in formats:
             with files.making(f"{name}.svg") as path:
                 save_section_svg(path, drawing, title=name)
@@ -82,10 +85,39 @@ def measure_cut(
         return {}
 
     with measuring(project, name):
-        section = cut_section(project.load_mesh(), plane)
+        place = load_georeference(project)
+        up = None if place is None else place.ground_from_model.rotation[2]
+        section = cut_section(project.load_mesh(), plane, up=up)
         measured, sigmas = measure_section(section, load_sample(project))
         drawing, chosen = section.as_drawing(), {"formats": sorted(formats)}
         return keep_measurement(project, name, measured, write=write, settings=chosen)
+
+
+def plane_across_ship(project: Project, *, frame: float | None, from_bow: float | None) -> Plane:
+    """Give the plane across a ship at a frame, or at a distance from the bow, in the scan's world.
+
+    Args:
+        project: A scan that was laid on the points of a ship.
+        frame: Number of the frame, where these were told.
+        from_bow: The distance, where there were no frames [m].
+
+    Raises:
+        MissingResult: The scan has not been laid on a ship's points.
+        InputError: Its points tell no frames, or nothing but frames.
+    """
+    place = load_georeference(project)
+    if place is None or place.hull is None:
+        raise MissingResult(
+            f"{project.root} does not say where on a ship it lies; run `murkscan georeference "
+            f"{project.root} --hull points.csv` first."
+        )
+    has_frames = place.hull.frame_spacing is not None
+    station = frame if has_frames else from_bow
+    if station is None:
+        flag = "--at-frame" if has_frames else "--from-bow-m"
+        raise InputError(f"The places of {project.root} are told otherwise: give {flag}.")
+    where = place.place_back(np.array([[place.hull.aft_of(station), 0.0, 0.0]]))[0]
+    return Plane.through(where, place.ground_from_model.rotation[0])
 
 
 def measure_stairs(

@@ -7,9 +7,11 @@ from dataclasses import replace
 from importlib.metadata import version
 from typing import Any
 
+import numpy as np
+
 from ..errors import InputError
 from ..io.json_files import save_json
-from ..project import CLOUD, MEASURE, MeasureResult, Project, StageFiles
+from ..project import CLOUD, MEASURE, MeasureResult, Project, StageFiles, load_georeference
 from ..types.measurement import Measurement
 from ..types.quantity import Quantity
 from .progress import silent
@@ -83,6 +85,12 @@ def keep_measurement(
         label=name,
     )
     details = dict(measured.details)
+    if measured.places and (place := load_georeference(project)) is not None:
+        told = place.tell(np.array(list(measured.places.values())))
+        details["places"] = {
+            what: dict(zip(place.heads, row, strict=True))
+            for what, row in zip(measured.places, told, strict=True)
+        }
 
     def make(_: None) -> MeasureResult:
         details.update(write(files))

@@ -51,7 +51,7 @@ def _find_place(project: Project) -> Finished[GeoreferenceResult] | None:
 
 def _as_placed(told: GeoreferenceResult) -> Placed:
     rows = [ControlRow(one.name, one.residual, one.sigma) for one in told.points]
-    return Placed(told.crs, rows, told.rms, told.remarks)
+    return Placed(told.crs, rows, told.rms, told.remarks, on_ship=told.hull is not None)
 
 
 def _find_walls(project: Project) -> Iterator[tuple[str, Finished[MeasureResult]]]:

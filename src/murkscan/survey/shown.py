@@ -8,7 +8,17 @@ import numpy as np
 
 from ..errors import InputError, MissingResult
 from ..io.deviation_files import load_deviation_ply
-from ..project import CLOUD, MEASURE, MESH, Project, digest, find_frame_times, find_trajectory
+from ..project import (
+    CLOUD,
+    GEOREFERENCE,
+    MEASURE,
+    MESH,
+    Project,
+    digest,
+    find_frame_times,
+    find_trajectory,
+    load_georeference,
+)
 from ..project.origin import name_recording
 from ..types.arrays import Indices
 from ..types.cloud import PointCloud
@@ -55,6 +65,9 @@ def load_model(project: Project, *, most: int, deviation: str = DEVIATION) -> Mo
         shift_field=None if recording is None else trace_shift_field(project),
         most=most,
     )
+    model = replace(
+        model, place=load_georeference(project) if georeference_digest(project) else None
+    )
     if deviation_digest(project, deviation) is None:
         return model
     points, values, rows = load_deviation_ply(
@@ -64,6 +77,16 @@ def load_model(project: Project, *, most: int, deviation: str = DEVIATION) -> Mo
         return model
     layer = Layer("deviation", values * 1e3, "mm", "RdBu_r", is_signed=True)
     return model.with_layer(layer, rows)
+
+
+def georeference_digest(project: Project) -> str | None:
+    """Give a short text that changes with where a scan lies.
+
+    None where nobody has said where, or only where an earlier cloud lay.
+    """
+    with suppress(MissingResult):
+        return project.finished(GEOREFERENCE).digest
+    return None
 
 
 def folder_of(project: Project) -> str:

@@ -10,7 +10,14 @@ from ..types.mesh import Mesh
 from ..view import MOST, PICTURES, TURN, draw_pictures, draw_turn, render_viewer
 from .compared import Compared, compare_models
 from .progress import Progress, silent
-from .shown import DEVIATION, deviation_digest, has_surface, load_model, title_of
+from .shown import (
+    DEVIATION,
+    deviation_digest,
+    georeference_digest,
+    has_surface,
+    load_model,
+    title_of,
+)
 from .stage_runner import run_stage
 
 _FILM, _RATE = (1280, 720), 24.0
@@ -53,6 +60,8 @@ def draw_views(
     inputs = {"mesh": project.finished(MESH).digest}
     if (measured := deviation_digest(project, deviation)) is not None:
         inputs["deviation"] = measured
+    if (placed := georeference_digest(project)) is not None:
+        inputs["georeference"] = placed
     if other is not None:
         inputs["other"] = f"{other.root} {other.finished(MESH).digest}"
     settings: dict[str, object] = {"most": most, "align": align and other is not None}

@@ -42,7 +42,7 @@ _ANOMALY_HEAD = (
     "number", "along_m", "height_m", "distance_mm", "half_width_95_mm", "width_mm", "rise_mm",
     "area_m2",
 )  # fmt: skip
-_MODEL_HEAD, _GRID_HEAD = ("x_m", "y_m", "z_m"), ("easting_m", "northing_m", "height_in_grid_m")
+_MODEL_HEAD = ("x_m", "y_m", "z_m")
 
 
 @dataclass(frozen=True)
@@ -233,6 +233,9 @@ def _system(drawn: _Drawn) -> str:
     what = "elevation of a wall: x along [m], y height [m], values distance out of it [m]"
     if drawn.place is None:
         return what
+    if drawn.place.hull is not None:
+        start = drawn.place.describe(drawn.frame.place(np.zeros((1, 3)))[0])
+        return f"{what}; x = 0 at {start}"
     start = drawn.place.place(drawn.frame.place(np.zeros((1, 3))))[0]
     end = drawn.place.place(drawn.frame.place(np.array([[1.0, 0.0, 0.0]])))[0]
     east, north = (end - start)[:2]
@@ -253,14 +256,14 @@ def _box(one: Anomaly) -> tuple[float, float, float, float]:
 
 
 def _heads(drawn: _Drawn, head: Sequence[str]) -> list[str]:
-    return [*head, *_MODEL_HEAD, *(() if drawn.place is None else _GRID_HEAD)]
+    return [*head, *_MODEL_HEAD, *(() if drawn.place is None else drawn.place.heads)]
 
 
-def _where(drawn: _Drawn, located: Points) -> list[list[float]]:
-    """Give the place of each, in the model's world and in the grid."""
+def _where(drawn: _Drawn, located: Points) -> list[list[str | float]]:
+    """Give the place of each, in the model's world and in the grid or on the ship."""
     points = drawn.frame.place(located)
-    columns = [points] if drawn.place is None else [points, drawn.place.place(points)]
-    return np.round(np.concatenate(columns, axis=1), 4).tolist()
+    told = [[]] * len(points) if drawn.place is None else drawn.place.tell(points)
+    return [[*place, *more] for place, more in zip(np.round(points, 4).tolist(), told, strict=True)]
 
 
 def _curve_rows(drawn: _Drawn) -> list[list[str | int | float]]:

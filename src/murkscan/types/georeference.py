@@ -1,4 +1,4 @@
-"""Where a model lies on the Earth."""
+"""Where a model lies on the Earth, or on a ship."""
 
 from dataclasses import dataclass, replace
 
@@ -7,16 +7,19 @@ from jaxtyping import Float
 
 from .arrays import Points, Scalars, Vector
 from .cloud import PointCloud
+from .hull import Cell, HullFrame
 from .pose import Pose
 from .short_repr import ShortRepr
 
 Matrix6 = Float[np.ndarray, "6 6"]
+_GRID_HEADS = ("easting_m", "northing_m", "height_in_grid_m")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Georeference(ShortRepr):
     """The way from the model's world to a grid of eastings, northings and heights.
 
+    Of a ship, which lies in no grid, the three are aft, to starboard and up; see `HullFrame`.
     The model is turned and shifted in metres on the ground, and the plane of the ground is scaled
     to the grid, whose metre is a little longer or shorter.
     """
@@ -33,6 +36,27 @@ class Georeference(ShortRepr):
     """The model in metres east, north and up of the origin."""
     covariance: Matrix6
     """Of the turn about the origin [rad] and the shift [m], along east, north and up."""
+    hull: HullFrame | None = None
+    """How places on a ship are told; None: it is a grid on the Earth."""
+
+    @property
+    def heads(self) -> tuple[str, ...]:
+        """Names of the numbers of a place, as tables have them."""
+        return _GRID_HEADS if self.hull is None else self.hull.heads
+
+    def tell(self, points: Points) -> list[list[Cell]]:
+        """Give the numbers of points of the model's world [m], in the order of `heads`."""
+        places = self.place(points).tolist()
+        if self.hull is None:
+            return [[round(number, 4) for number in place] for place in places]
+        return [list(self.hull.tell((aft, side, up))) for aft, side, up in places]
+
+    def describe(self, point: Vector) -> str:
+        """Say where a point of the model's world [m] is, for people."""
+        first, second, up = self.place(point[None])[0].tolist()
+        if self.hull is not None:
+            return self.hull.describe((first, second, up))
+        return f"easting {first:.3f}, northing {second:.3f}, height {up:.3f} m"
 
     def place(self, points: Points) -> Points:
         """Give easting, northing and height [m] of points of the model's world [m]."""

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from .arrays import Vector
 from .quantity import Quantity
 from .short_repr import ShortRepr
 
@@ -20,6 +21,8 @@ class Measurement(ShortRepr):
     keys carry their unit."""
     remarks: tuple[str, ...] = ()
     """Why a number means less than its interval says, and what to do; sentences for the user."""
+    places: Mapping[str, Vector] = field(default_factory=dict)
+    """Where what was measured is, in the world [m], by names such as from and to."""
 
     def __getitem__(self, name: str) -> Quantity:
         """Give a quantity by its name.

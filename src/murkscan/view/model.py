@@ -9,6 +9,7 @@ from scipy.spatial import KDTree
 
 from ..errors import InputError
 from ..types.arrays import Directions, Faces, Indices, Points, Scalars
+from ..types.georeference import Georeference
 from ..types.pose import Pose
 from .shift_field import ShiftField
 from .surface import vertex_normals
@@ -77,6 +78,8 @@ class Model:
     """How far points move with the rig's errors; None where the rig states none."""
     pose_errors: Float[np.ndarray, "positions 6 errors"] | None = None
     """Errors of the path's poses, as `Trajectory.errors`; None where the motion states none."""
+    place: Georeference | None = None
+    """Where the world frame lies, on the Earth or on a ship; None where nobody has said so."""
     note: str = ""
     """What must be said of it in plain words, such as that points were left out."""
 
@@ -122,6 +125,7 @@ class Model:
             attitudes=target_from_world.turn(self.attitudes) if known else self.attitudes,
             pose_errors=None if errors is None else turn @ errors,
             views=views,
+            place=None,
         )
 
 

@@ -12,6 +12,7 @@ from markupsafe import Markup
 
 from ..errors import InputError, NotEnoughData
 from ..types.arrays import Indices, Scalars
+from ..types.georeference import Georeference
 from .depth import Depth
 from .model import Layer, Model
 from .packing import pack, pack_directions, pack_moves, pack_positions, pack_values
@@ -126,6 +127,7 @@ def _pack_model(model: Model) -> tuple[dict[str, Any], dict[str, str]]:
         "shifts": _about_shifts(model.shift_field),
         "poseErrors": _about_pose_errors(model.pose_errors),
         "sharing": _name_shared(model),
+        "place": _about_place(model.place),
         "views": {view.name: _rounded(view.view_from_world, 9) for view in model.views},
     }
     return about, blobs
@@ -148,6 +150,25 @@ def _about_shifts(field: ShiftField | None) -> dict[str, Any] | None:
         "scale": field.scale,
         "powers": field.powers.tolist(),
         "coefficients": _rounded(field.coefficients, 9),
+    }
+
+
+def _about_place(place: Georeference | None) -> dict[str, Any] | None:
+    if place is None:
+        return None
+    hull = place.hull
+    return {
+        "rotation": place.ground_from_model.rotation.tolist(),
+        "translation": place.ground_from_model.translation.tolist(),
+        "scale": place.scale,
+        "origin": place.origin.tolist(),
+        "hull": None
+        if hull is None
+        else {
+            "spacing": hull.frame_spacing,
+            "framesFrom": hull.frames_from,
+            "heightsAbove": hull.heights_above,
+        },
     }
 
 

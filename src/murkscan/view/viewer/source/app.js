@@ -1,5 +1,6 @@
 // What the reader has chosen, and everything that follows from it.
 
+import { controlTool } from "./control_tool.js";
 import { cutModel, cutTool, firstCut, shareThrough } from "./cut_tool.js";
 import { Drawing } from "./drawing.js";
 import { showAxes, showLegend, showScale } from "./furniture.js";
@@ -16,7 +17,7 @@ import { showTool } from "./show_tool.js";
 import { colourTable } from "./unpack.js";
 import { viewsTool } from "./views_tool.js";
 
-const OVER = new Set(["measuring", "first", "snapped", "measures", "along", "read"]);
+const OVER = new Set(["measuring", "first", "snapped", "measures", "along", "read", "picking", "picks", "controlKind"]);
 
 export class App {
   constructor(content, models, stage) {
@@ -29,6 +30,7 @@ export class App {
     this.state = {
       scan: 0, kind: "surface", layer: preferred, ranges: {}, cut: null, along: null,
       measuring: false, first: null, snapped: null, measures: [], read: null,
+      picking: false, picks: [], controlKind: "earth",
       path: false, profile: Infinity, playing: false,
     };
     this.lines = new Lines();
@@ -39,7 +41,7 @@ export class App {
     stage.start(views.front[1].map((x) => -x), Math.max(size, 1e-4));
     stage.listeners.push(() => this.follow());
     this.help = makeHelp();
-    this.tools = [showTool, viewsTool, measureTool, cutTool, pathTool].map((tool) => tool(this));
+    this.tools = [showTool, viewsTool, measureTool, cutTool, pathTool, controlTool].map((tool) => tool(this));
     buildPanel(this, this.tools);
     startKeys(this);
     startPointer(this);
@@ -52,6 +54,7 @@ export class App {
   get range() { return this.state.ranges[this.layer.name] ?? this.layer.range; }
   get now() { return this.state.profile; }
   get cut() { return this.section?.plane ?? null; }
+  get picks() { return this.state.picks.filter(({ scan }) => scan === this.state.scan); }
   get measures() { return this.state.measures.filter(({ scan }) => scan === this.state.scan); }
 
   update(patch) {
@@ -59,7 +62,7 @@ export class App {
       Object.assign(patch, { first: null, snapped: null, read: null, along: null, profile: Infinity, playing: false });
       if (this.state.cut?.axis === "measured") patch.cut = null;
     }
-    if (patch.measuring) patch.read = null; // it would lie over what is measured
+    if (patch.measuring || patch.picking) patch.read = null; // it would lie over what is measured
     Object.assign(this.state, patch);
     const isIn = (name) => name in patch;
     if (["scan", "cut", "along"].some(isIn)) this.findSection();
@@ -92,7 +95,7 @@ export class App {
     showLegend(layer, layer && this.range, layer && this.colours[layer.map]);
     showReading(this);
     document.getElementById("about").textContent = describeModel(model, this.models.length > 1);
-    stage.canvas.classList.toggle("measuring", state.measuring);
+    stage.canvas.classList.toggle("measuring", state.measuring || state.picking);
     for (const tool of this.tools) tool.sync();
   }
 

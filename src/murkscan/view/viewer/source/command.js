@@ -20,7 +20,7 @@ const quoted = (text) => (/^[\w./:@+-]+$/.test(text) ? text : `'${text.replaceAl
 const isShownWithin = window.parent !== window;
 
 export function copyButton(text) {
-  if (isShownWithin) {
+  if (isShownWithin && text.startsWith("murkscan measure ")) {
     return make("button", {
       type: "button", className: "copy", textContent: "Take this measure", title: text,
       onclick: () => window.parent.postMessage({ murkscan: text }, "*"),

@@ -20,10 +20,11 @@ const HELP = [
   ["S", "surface or points"],
   ["M", "measure: then click two points"],
   ["C", "cut"],
+  ["G", "pick control points"],
   ["P", "play the profiles"],
   ["B", "before and after, where there are two scans"],
   ["T", "light or dark"],
-  ["Esc", "stop measuring"],
+  ["Esc", "stop measuring and picking"],
   ["?", "this help"],
 ];
 
@@ -48,13 +49,14 @@ export function startKeys(app) {
     "-": () => stage.zoomBy(1 / ZOOM), _: () => stage.zoomBy(1 / ZOOM),
     r: () => app.reset(),
     s: () => app.update({ kind: app.state.kind === "surface" ? "points" : "surface" }),
-    m: () => app.update({ measuring: !app.state.measuring, first: null }),
+    m: () => app.update({ measuring: !app.state.measuring, picking: false, first: null }),
+    g: () => app.update({ picking: !app.state.picking, measuring: false, first: null }),
     c: () => app.toggleCut(),
     p: () => app.play(!app.state.playing),
     b: () => app.update({ scan: (app.state.scan + 1) % app.models.length }),
     t: () => { swapTheme(); app.update({}); },
     "?": () => app.help.showModal(),
-    Escape: () => app.update({ measuring: false, first: null, snapped: null }),
+    Escape: () => app.update({ measuring: false, picking: false, first: null, snapped: null }),
   };
   names.forEach((name, number) => { actions[String(number + 1)] = () => app.lookFrom(name); });
   window.addEventListener("keydown", (event) => {

@@ -8,7 +8,7 @@ import { length } from "./numbers.js";
 export function measureTool(app) {
   const toggle = make("button", {
     type: "button", textContent: "Measure", title: "Key M",
-    onclick: () => app.update({ measuring: !app.state.measuring, first: null }),
+    onclick: () => app.update({ measuring: !app.state.measuring, picking: false, first: null }),
   });
   const clear = make("button", {
     type: "button", textContent: "Clear", onclick: () => app.update({ measures: [], first: null }),
@@ -62,10 +62,17 @@ export function drawMeasures(app) {
     .map((i) => app.stage.project(pointOf(app.model, i))));
   marks.innerHTML = [
     ...ends.map(([a, b]) => `<path d="M${a[0]} ${a[1]}L${b[0]} ${b[1]}"/>${[a, b].map(ring).join("")}`),
+    ...app.picks.map(({ point }) => ring(app.stage.project(pointOf(app.model, point)))),
     ...[app.state.first, app.state.snapped].filter((i) => i !== null)
       .map((i) => ring(app.stage.project(pointOf(app.model, i)))),
   ].join("");
-  labels.replaceChildren(...app.measures.map(({ length: metres, off }, k) => {
+  const names = app.picks.map(({ point, cells }, k) => {
+    const [x, y] = app.stage.project(pointOf(app.model, point));
+    const label = make("span", { textContent: cells.name || `P${k + 1}` });
+    label.style.translate = `calc(${x}px - 50%) calc(${y}px - 140%)`;
+    return label;
+  });
+  labels.replaceChildren(...names, ...app.measures.map(({ length: metres, off }, k) => {
     const [a, b] = ends[k];
     const label = make("span", { textContent: length(metres) + (off === null ? "" : ` ± ${length(off)}`) });
     label.style.translate = `calc(${(a[0] + b[0]) / 2}px - 50%) calc(${(a[1] + b[1]) / 2}px - 140%)`;

@@ -3,6 +3,7 @@
 import { NO_VALUE, pointOf, worldPlace } from "./model.js";
 import { place, valueText } from "./numbers.js";
 import { pick } from "./pick.js";
+import { placeWords } from "./place.js";
 import { wordFor } from "./words.js";
 
 const STILL = 6; // px that a click may move
@@ -24,7 +25,7 @@ export function startPointer(app) {
   });
   let waiting = false;
   canvas.addEventListener("pointermove", (event) => {
-    if (!app.state.measuring || event.buttons || waiting) return;
+    if (!(app.state.measuring || app.state.picking) || event.buttons || waiting) return;
     waiting = true;
     requestAnimationFrame(() => {
       waiting = false;
@@ -34,7 +35,7 @@ export function startPointer(app) {
   });
   canvas.addEventListener("dblclick", (event) => {
     const found = find(app, event);
-    if (found !== null && !app.state.measuring) app.stage.centreOn(pointOf(app.model, found));
+    if (found !== null && !app.state.measuring && !app.state.picking) app.stage.centreOn(pointOf(app.model, found));
   });
 }
 
@@ -44,7 +45,11 @@ function find(app, event) {
 }
 
 function click(app, found) {
-  const { measuring, first } = app.state;
+  const { measuring, first, picking, picks, scan } = app.state;
+  if (picking) {
+    if (found === null || picks.some((one) => one.scan === scan && one.point === found)) return undefined;
+    return app.update({ picks: [...picks, { scan, point: found, cells: {} }] });
+  }
   if (!measuring) return app.update({ read: found });
   if (found === null || found === first) return undefined;
   if (first === null) return app.update({ first: found });
@@ -58,8 +63,9 @@ export function showReading(app) {
   element.hidden = read === null;
   if (read === null) return;
   const { model } = app;
-  const places = worldPlace(model, pointOf(model, read)).map((x, k) => `${"xyz"[k]} ${place(x)}`);
+  const world = worldPlace(model, pointOf(model, read));
+  const places = world.map((x, k) => `${"xyz"[k]} ${place(x)}`);
   const known = model.layers.filter(({ name }) => model.values[name][read] !== NO_VALUE)
     .map(({ name, unit }) => `${wordFor(name)} ${valueText(model.values[name][read], unit)}`);
-  element.textContent = [...places, ...known, `profile ${model.moments[read] + 1}`].join("  ·  ");
+  element.textContent = [...placeWords(model, world), ...places, ...known, `profile ${model.moments[read] + 1}`].join("  ·  ");
 }
