@@ -53,7 +53,8 @@ def _end_beside(
                     break
                 inner[i] = heights[line, found]
                 shape = max(shapes[line, found], 0)
-            blur = np.median(inner) * tails[shape, far - 1]
+            low, high = min(inner[0], inner[1]), max(inner[0], inner[1])
+            blur = max(low, min(high, inner[2])) * tails[shape, far - 1]  # the middle one
             if blur > best:
                 best, away = blur, way
     return away

@@ -151,7 +151,11 @@ def meet_fan(
     tangents = np.linspace(-edge, edge, _SAMPLES)
     starts, sampled = trace_fan_rays(tangents, fan, interfaces)
     sampled *= np.sqrt(1.0 + tangents * tangents).reshape(-1, 1)
-    turns = np.cross(sampled, starts)
+    turns = np.empty_like(starts)
+    for j in range(_SAMPLES):
+        qx, qy, qz = sampled[j]
+        px, py, pz = starts[j]
+        turns[j, 0], turns[j, 1], turns[j, 2] = _cross(qx, qy, qz, px, py, pz)
     points, moments = np.empty_like(origins), np.empty(_SAMPLES)
     for i in range(len(origins)):
         ox, oy, oz = origins[i]

@@ -102,6 +102,7 @@ def fit_ridges(
         Position and its standard deviation [px of `lines`], the core's height [grey levels] and
         width [px of `lines`], and the skirt's share; NaN where nothing fits.
     """
+    scan_lines = np.ascontiguousarray(scan_lines)  # loops are compiled anew for each layout
     half = max(6, math.ceil(5 * shape.width) + 3)
     look = np.array([shape.width, tightness.width, shape.skirt, tightness.skirt])
     along = SKIRT * shape.width

@@ -82,7 +82,9 @@ def learn_response_law(frames: Sequence[ScanLines], matched: MatchedFilter) -> N
 
 def _answers(lines: ScanLines, matched: MatchedFilter) -> tuple[Scalars, Scalars]:
     """List the level around, and the answer, of some pixels that are not saturated."""
-    signal, levels = lines.signal[:, ::_EVERY], lines.levels[:, ::_EVERY]
+    signal, levels = (
+        np.ascontiguousarray(one[:, ::_EVERY]) for one in (lines.signal, lines.levels)
+    )
     answers = score_pixels(signal, levels, matched.template, np.array([1.0, 0, 0, 1, 0]))
     half = len(matched.template) // 2
     inside = answers[half:-half]

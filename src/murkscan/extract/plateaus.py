@@ -24,6 +24,7 @@ def measure_at(
     """Measure the plateaus that some pixels are in; see `measure_plateaus`."""
     law = noise.as_law()
     law[4] *= SHARE
+    scan_lines = np.ascontiguousarray(scan_lines)  # loops are compiled anew for each layout
     return measure_plateaus(lines.levels, scan_lines, np.rint(positions), law)
 
 

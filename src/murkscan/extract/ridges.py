@@ -238,7 +238,7 @@ def _add_plateaus(
     line, found = list_plateaus(lines, bank.noise)
     if len(line) == 0:
         return
-    middle, _, rise, width = found.T
+    middle, _, rise, width = np.ascontiguousarray(found.T)
     noise = bank.filters[0].noise.variance(bank.noise.white - rise)
     tops = rise * np.sqrt(width / noise)
     reaches = 0.5 * width + np.maximum(0.5 * width, _RIM_OF_WHITE)
