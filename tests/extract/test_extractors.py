@@ -4,7 +4,9 @@ import math
 
 import numpy as np
 import pytest
+from scipy.special import ndtr
 
+from murkscan._kernels.gray_gravity import weigh_peaks
 from murkscan.errors import InputError
 from murkscan.extract import GaussianFit, GrayGravity, Murk, Steger, ThresholdSkeleton, learn_noise
 from murkscan.types.camera import Camera
@@ -100,6 +102,18 @@ def test_a_noisy_stripe_is_found_to_the_projects_bar(extractor, bar, axis):
         for seed in range(10)
     ]
     assert np.sqrt(np.mean(np.concatenate(errors) ** 2)) < bar
+
+
+@pytest.mark.parametrize("width", [0.5, 0.8, 1.5, 3.0])
+def test_gray_gravity_weighs_a_narrow_stripe_alike_wherever_in_its_pixel_it_lies(width):
+    """Of an interlaced picture's fields a stripe's 1σ is half a pixel; a plate shows one phase."""
+    truth = 30 + np.arange(64) / 64
+    edges = np.arange(62)[:, None] - 0.5
+    share = np.diff(ndtr((edges - truth) / width), axis=0)
+    image = np.rint(4 + 200 * np.sqrt(2 * np.pi) * width * share).clip(0, 255).astype(np.uint8)
+    peaks = np.stack([np.arange(64), image.argmax(axis=0)], axis=1)
+    centres = weigh_peaks(image, peaks, True, 12, 0.25, 10.0, 1.0)[:, 0]
+    np.testing.assert_allclose(centres, truth, atol=0.012)
 
 
 @pytest.mark.parametrize("extractor", EXTRACTORS, ids=_name)

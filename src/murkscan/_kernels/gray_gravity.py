@@ -5,6 +5,11 @@ from numba import njit
 
 _SIDE = 5
 """Pixels on one side of a peak that give the background there."""
+_NARROWEST = 3.5
+"""Half the narrowest window [px]: a stripe that is half a pixel wide (1σ) is weighed alike wherever
+in its pixel it lies, to 0.004 px."""
+_TURNS = 4
+"""Times that the window is laid anew on its own centre, which halves what is left ten times."""
 
 
 @njit(cache=True, nogil=True)
@@ -40,8 +45,9 @@ def weigh_peaks(
     """Centre of mass of what each peak shows above its foot.
 
     The background is the line through the levels on both sides of the peak; the foot lies
-    above it by a share of the peak's height. The window ends where the stripe first sinks below its
-    foot, between two pixels.
+    above it by a share of the peak's height. Each pixel is weighed by a window without edges, which
+    is as wide to either side as the stripe is at its foot, and lies on the centre that it gives: a
+    window with edges pulls the centre by up to 0.2 px to where in its pixel an edge lies.
 
     Scan lines are image columns if `down`, otherwise image rows. Gives centre, its standard
     deviation, height over background, one peak a row (n 3); NaN where it is less than `least` high.
@@ -56,8 +62,7 @@ def weigh_peaks(
         slope = (right - left) / (before + after)
         base = left + slope * before
         height = scan[peak] - base
-        # The peak's own pixel holds light from all of its width: a twelfth of a square pixel.
-        mass, moment, spread = 0.0, 0.0, 1.0 / 12.0
+        width = 0.0
         for way in (-1, 1):
             reached, weight = 0, (1.0 - foot) * height
             while reached < half_width and weight > 0:
@@ -65,20 +70,46 @@ def weigh_peaks(
                 beyond = -1.0
                 if low <= v < high:
                     beyond = scan[v] - base - slope * (v - peak) - foot * height
-                # Between pixels the stripe is a straight line: this piece of it is a trapezium, or
-                # a triangle where it ends. Whole pixels would pull the centre to their middles.
-                share = 1.0 if beyond > 0 else weight / (weight - beyond)
-                near, far = 0.5 * share * weight, 0.5 * share * max(beyond, 0.0)
-                at = way * (reached + (0.0 if beyond > 0 else share / 3))
-                mass += near + far
-                moment += near * at + far * way * (reached + 1)
-                spread += reached**2
+                # Between pixels the stripe is a straight line, also where it ends.
+                width += 1.0 if beyond > 0 else weight / (weight - beyond)
                 reached, weight = reached + 1, beyond
-        if mass > 0 and height >= least:
-            shift = moment / mass
-            # How far the background's slope is uncertain, and how far that moves the centre.
-            tilt = spread * np.sqrt(2.0 / _SIDE) / (before + after)
-            found[i, 0] = peak + shift
-            found[i, 1] = noise * np.sqrt(spread + tilt**2) / mass
-            found[i, 2] = height
+        if height >= least:
+            reach = min(max(width, _NARROWEST), half_width + 0.5)
+            shift, spread = _weigh(
+                scan, peak, base, slope, reach, 2 / _SIDE / (before + after) ** 2
+            )
+            if abs(shift) <= 0.5 * reach and spread > 0:
+                found[i, 0] = peak + shift
+                found[i, 1] = noise * spread
+                found[i, 2] = height
     return found
+
+
+@njit(cache=True, nogil=True)
+def _weigh(
+    scan: np.ndarray, peak: int, base: float, slope: float, reach: float, tilt: float
+) -> tuple[float, float]:
+    """Give the centre in a window that lies on it, from the peak, and its deviation over noise.
+
+    The window is (1 - d² / reach²)² at a distance d, zero beyond its reach; `tilt` is the variance
+    of the background's slope over that of a pixel. Deviation 0: there is no centre.
+    """
+    shift, deviation = 0.0, 0.0
+    for _ in range(_TURNS):
+        low = max(peak + int(np.ceil(shift - reach)), 0)
+        high = min(peak + int(np.floor(shift + reach)), len(scan) - 1)
+        moment, growth, spread, lever = 0.0, 0.0, 0.0, 0.0
+        for v in range(low, high + 1):
+            away = v - peak - shift
+            part = 1.0 - (away / reach) ** 2
+            level = scan[v] - base - slope * (v - peak)
+            weight = part * part * away
+            moment += weight * level
+            growth += (part * part - 4.0 * part * (away / reach) ** 2) * level
+            spread += weight * weight
+            lever += weight * away
+        if growth <= 0.0:
+            return 0.0, 0.0
+        shift += min(max(moment / growth, -1.0), 1.0)
+        deviation = np.sqrt(spread + tilt * lever**2) / growth
+    return shift, deviation

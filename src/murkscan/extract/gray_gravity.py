@@ -21,9 +21,10 @@ from .candidates import Candidates
 @final
 @dataclass(frozen=True)
 class GrayGravity(AbstractExtractor):
-    """Centre of mass of the grey levels around each peak, background and foot taken off.
+    """Centre of mass of the grey levels around each peak, background taken off.
 
-    The window ends where the stripe sinks below its foot, so it is as wide as the stripe.
+    They are weighed in a window without edges, as wide to either side as the stripe is at its foot,
+    which lies on the centre that it gives.
 
     References:
         Naidu and Fisher, A comparative analysis of algorithms for determining the peak position of
@@ -33,7 +34,7 @@ class GrayGravity(AbstractExtractor):
     half_width: float = 12.0
     """Half the widest window [px]: more than half the stripe at its foot."""
     foot: float = 0.25
-    """Share of the peak's height that counts as its foot, and not as stripe."""
+    """Share of the peak's height at which the stripe's width is taken."""
     min_height: float = 10.0
     """Grey levels by which a peak must rise above both of its sides."""
     min_contrast: float = 5.0

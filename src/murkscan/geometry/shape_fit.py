@@ -9,7 +9,7 @@ from jaxtyping import Float
 from ..errors import Degenerate, InputError, NotConverged, NotEnoughData
 from ..types.arrays import Mask, Points, Scalars, Vector
 from .shape import AnyShape, Slopes
-from .stripe_blur import Sight, blur_slopes, is_readable
+from .stripe_blur import Sight, blur_moves, is_readable, sheet_moves
 
 _GAUSSIAN = 1.4826
 """Standard deviation of Gaussian noise as a multiple of its median absolute value."""
@@ -128,11 +128,13 @@ def _linearise(
     residuals, slopes = shape.distance_to(points), shape.slopes(points)
     if sight is None:
         return residuals, slopes, np.ones(len(points), bool)
-    by_blur, readable = blur_slopes(shape, points, sight), is_readable(shape, points, sight)
+    moved, by_blur = blur_moves(shape, points, sight, blur)
+    readable = is_readable(shape, points, sight)
     if not np.any(by_blur):
         return residuals, slopes, readable
     slopes = np.concatenate([slopes, -by_blur[:, None]], axis=1)
-    return residuals - blur * by_blur, slopes, readable
+    moved = moved + sheet_moves(shape, points, sight)
+    return residuals - moved, slopes, readable
 
 
 def _median(values: Scalars) -> float:

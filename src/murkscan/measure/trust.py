@@ -7,12 +7,13 @@ import numpy as np
 from jaxtyping import Float
 
 from ..geometry.correlated_errors import covariance_of_fit
-from ..geometry.shape import AnyShape
+from ..geometry.shape import AnyShape, Slopes
 from ..geometry.shape_fit import ShapeFit
+from ..geometry.stripe_blur import loss_moves, sheet_moves
 from ..types.quantity import Quantity
 from .sample import Sample
 
-_BLUR_MODEL = 0.3
+_BLUR_MODEL = 0.2
 """Share of the blur's effect that its formula leaves open: on simulated spheres and cylinders it is
 met to a quarter, with finders as different as gray gravity and Murk."""
 _MOST_SHIFTED = 2000
@@ -70,7 +71,7 @@ def trust_fit(fit: ShapeFit[AnyShape], sample: Sample) -> FitUncertainty:
     independent = covariance_of_fit(
         fit.slopes[inside], fit.residuals[inside], sample.profile[inside], sample.line[inside]
     )
-    matrix = independent.matrix + _blur_part(fit)
+    matrix = independent.matrix + _blur_part(fit) + _open_part(fit, sample)
     return FitUncertainty(matrix, independent.degrees, _common_moves(fit, sample))
 
 
@@ -86,6 +87,26 @@ def _blur_part(fit: ShapeFit[AnyShape]) -> Float[np.ndarray, "p p"]:
     return (_BLUR_MODEL * fit.blur) ** 2 * np.outer(moves, moves)
 
 
+def _open_part(fit: ShapeFit[AnyShape], sample: Sample) -> Float[np.ndarray, "p p"]:
+    """Give the covariance that follows from what nobody knows of light and sheet."""
+    count = fit.slopes.shape[1]
+    if sample.sight is None:
+        return np.zeros((count, count))
+    inside = fit.inliers
+    seen = fit.shape, sample.cloud.points[inside], sample.sight[inside]
+    off = np.stack([loss_moves(*seen, fit.blur), sheet_moves(*seen)], axis=1)
+    moves = _follow(fit.slopes[inside], off)
+    return moves @ moves.T
+
+
+def _follow(slopes: Slopes, off: Float[np.ndarray, "n modes"]) -> Float[np.ndarray, "p modes"]:
+    """Give how a fit's parameters follow where points move off the shape [m]."""
+    scale = np.maximum(np.linalg.norm(slopes, axis=0), 1e-300)
+    moves, *_ = np.linalg.lstsq(slopes / scale, -off, rcond=None)
+    followed: Float[np.ndarray, "p modes"] = moves / scale[:, None]
+    return followed
+
+
 def _common_moves(fit: ShapeFit[AnyShape], sample: Sample) -> Float[np.ndarray, "p modes"] | None:
     """Give how a fit's parameters follow when the rig's errors move its points."""
     if sample.shifts is None:
@@ -96,7 +117,4 @@ def _common_moves(fit: ShapeFit[AnyShape], sample: Sample) -> Float[np.ndarray, 
     normals = fit.shape.normals(sample.cloud.points[some])
     outwards = np.einsum("ij,ijm->im", normals, shifts)
     known = np.isfinite(outwards).all(axis=1)
-    slopes = fit.slopes[some][known]
-    scale = np.maximum(np.linalg.norm(slopes, axis=0), 1e-300)
-    moves, *_ = np.linalg.lstsq(slopes / scale, -outwards[known], rcond=None)
-    return moves / scale[:, None]
+    return _follow(fit.slopes[some][known], outwards[known])

@@ -99,7 +99,7 @@ class MergedErrors:
 
         The arguments are those of `shifts`.
         """
-        columns = np.zeros((3, len(cloud), 3))
+        columns, ranges = np.zeros((3, len(cloud), 3)), np.zeros(len(cloud))
         for number in np.unique(owner).tolist():
             one, mine = self.passes[number], owner == number
             if one is None:
@@ -107,8 +107,9 @@ class MergedErrors:
             some = cloud[mine]
             times = some.frame.astype(float)
             seen = look_back(some.points, some.laser, times, one.trajectory, one.rig)
-            columns[:, mine] = seen.rays, seen.along, seen.light
-        return Sight(*columns)
+            columns[:, mine], ranges[mine] = (seen.rays, seen.along, seen.light), seen.ranges
+        rays, along, light = columns
+        return Sight(rays, along, light, ranges)
 
     def is_facing(self, owner: Indices, cloud: PointCloud) -> Mask:
         """Tell which points turn neither from their camera nor from their light; see `is_facing`.

@@ -35,7 +35,8 @@ def look_back(
     """
     cameras = trajectory.transform(np.zeros_like(points), times)
     rays = points - cameras
-    rays /= np.maximum(np.linalg.norm(rays, axis=1, keepdims=True), 1e-12)
+    ranges = np.linalg.norm(rays, axis=1)
+    rays /= np.maximum(ranges, 1e-12)[:, None]
     index = refractive_index(rig.water, rig.wavelength)
     stripes, lights = np.zeros_like(points), np.zeros_like(points)
     for number in np.unique(laser).tolist():
@@ -43,7 +44,7 @@ def look_back(
         stripes[mine] = (0.0, 1.0, 0.0) if rig.lasers[number].axis == "x" else (1.0, 0.0, 0.0)
         lights[mine] = light_across(rig.lasers[number], index)
     along, light = (trajectory.transform(way, times) - cameras for way in (stripes, lights))
-    return Sight(rays, along, light)
+    return Sight(rays, along, light, ranges)
 
 
 def find_pixels(points: Points, times: Scalars, trajectory: Trajectory, rig: Rig) -> Pixels:
