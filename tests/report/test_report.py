@@ -282,7 +282,7 @@ def test_the_map_and_the_speed_are_the_same_on_the_page_and_in_the_file():
     text = _text(page)
     assert "highest speed for the wanted spacing 200 mm/s" in text
     assert "a spacing of 8 mm, which was asked for" in text
-    assert "covered 0.00072 100" in text
+    assert "covered 0.0007200 100.0" in text
     assert "Slow enough: profiles lie 0.5 times the wanted spacing apart" in text
     assert json.loads(json.dumps(content, allow_nan=False)) == content
 

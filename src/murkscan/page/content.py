@@ -2,10 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 from typing import ClassVar, Literal, final
 
-Cell = str | int | float | None
-"""A table's cell; a number is aligned to the right, None shows as a dash."""
+Cell = str | int | float | Decimal | None
+"""A table's cell; a number is aligned to the right, a Decimal with the digits that it has; None is
+shown as a dash."""
 
 
 @final
@@ -77,6 +79,17 @@ class Gallery:
 
 @final
 @dataclass(frozen=True)
+class Model:
+    """A model to turn, on a page of its own that is shown within this one."""
+
+    kind: ClassVar[str] = "model"
+    path: str
+    """Of the page, relative to this one, with forward slashes."""
+    caption: str
+
+
+@final
+@dataclass(frozen=True)
 class Code:
     """Lines to be typed as they are."""
 
@@ -94,7 +107,7 @@ class Signatures:
     """What stands below each line."""
 
 
-Block = Note | Facts | Table | Figure | Gallery | Code | Signatures
+Block = Note | Facts | Table | Figure | Gallery | Model | Code | Signatures
 
 
 @final

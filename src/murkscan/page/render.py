@@ -1,6 +1,7 @@
 """Turn content into one self-contained HTML page."""
 
 from collections.abc import Sequence
+from decimal import Decimal
 from functools import lru_cache
 from urllib.parse import quote
 
@@ -34,7 +35,7 @@ def _template() -> Template:
     )
     environment.filters["cell"] = format_cell
     environment.filters["address"] = _as_address
-    environment.tests["numeric"] = lambda cell: isinstance(cell, int | float)
+    environment.tests["numeric"] = lambda cell: isinstance(cell, int | float | Decimal)
     return environment.get_template("page.html")
 
 
@@ -42,7 +43,7 @@ def format_cell(cell: Cell) -> str:
     """Write a table's cell: numbers with thin spaces between thousands, nothing as a dash."""
     if cell is None:
         return "–"
-    if isinstance(cell, int):
+    if isinstance(cell, int | Decimal):
         return f"{cell:,}".replace(",", "\u202f")
     return f"{cell:,.4g}".replace(",", "\u202f") if isinstance(cell, float) else cell
 

@@ -1,7 +1,9 @@
 """The parts of the page that a client reads: what was scanned, how well, and how to do it again."""
 
+import math
 from collections.abc import Mapping, Sequence
 from datetime import datetime
+from decimal import Decimal
 from typing import Any
 
 from ..page import Block, Code, Note, Table, format_cell
@@ -44,14 +46,13 @@ def scanned_rows(summary: ScanSummary) -> list[tuple[str, str]]:
 def coverage_blocks(coverage: Coverage, *, is_asked: bool) -> list[Block]:
     """Show the map, and the areas that it has and misses."""
     told = "was asked for" if is_asked else "is this scan's own; --spacing-mm asks for another"
-    rows: list[tuple[str, float | None, float | None]] = [
-        ("covered", coverage.covered, 100 * coverage.covered / coverage.mapped)
+    areas = {NAMES[cause]: area for cause, area in coverage.missing.items()}
+    areas = {"covered": coverage.covered} | areas | {"all": coverage.mapped}
+    digits = max(3 - math.floor(math.log10(coverage.mapped)), 0)
+    rows = [
+        (name, Decimal(f"{area:.{digits}f}"), Decimal(f"{100 * area / coverage.mapped:.1f}"))
+        for name, area in areas.items()
     ]
-    rows += [
-        (NAMES[cause], area, 100 * area / coverage.mapped)
-        for cause, area in coverage.missing.items()
-    ]
-    rows.append(("all", coverage.mapped, 100.0))
     text = (
         f"Gaps are judged by a spacing of {1e3 * coverage.wanted:.3g} mm, which {told}. Where "
         f"neighbours on a scan line lie more than {1e3 * coverage.hole:.3g} mm apart, what is "

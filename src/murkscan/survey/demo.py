@@ -1,6 +1,8 @@
 """The demo: simulate a recording, scan it as the paper does and as we do, and ask the truth."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 from pathlib import Path
 
 import numpy as np
@@ -8,14 +10,16 @@ import numpy as np
 from ..capture import open_recording
 from ..extract import AbstractExtractor, Murk, ThresholdSkeleton
 from ..geometry.mesh_distance import distance_to_mesh
+from ..io.images import write_image
 from ..io.mesh_files import load_mesh
 from ..io.rig_toml import load_rig
 from ..io.text import save_text
 from ..motion import ConstantSpeed
-from ..page import Gallery, Note, Picture, Section, Table, render_page
-from ..project import Project
+from ..page import Gallery, Model, Note, Picture, Section, Table, render_page
+from ..project import Project, find_trajectory
 from ..simulate import as_standalone, parse_scene, read_scene
-from ..types.arrays import Scalars
+from ..types.arrays import ColourImage, Scalars
+from ..view import Depth, View, render, standard_views
 from .progress import Progress, silent
 from .scan import scan
 from .simulate import simulate_recording
@@ -30,7 +34,9 @@ _NEXT = (
     "measured: an edge hid the surface from the laser or from the camera, or no light came back. "
     "How the scan by murk went, and how far to trust it, stands in scan/report/index.html."
 )
-_TURN = "the surface, coloured by its distance from the camera; click to turn and measure it"
+_HEAD = ("", "points", "false [%]", "RMS of the others [mm]")
+_SIZE = 1280, 480
+"""Of the pictures of both hulls, which lie along them [px]."""
 _COMPARED = 20_000
 """Points of the cloud that are held against the truth."""
 
@@ -90,6 +96,8 @@ def run_demo(out: Path, *, progress: Progress = silent) -> tuple[Compared, Compa
     simulate_recording(scene, out / "recording", text=text, progress=progress)
     ours = _scan(out, "scan", Murk(), "murk: noise, chain and fit", progress)
     paper = _scan(out, "paper", ThresholdSkeleton(), "the paper: threshold and skeleton", progress)
+    for one in (paper, ours):
+        write_image(out / f"{one.project.root.name}.png", _draw_hull(one.project))
     save_text(out / "index.html", _page(ours, paper))
     return ours, paper
 
@@ -124,32 +132,51 @@ def _of(name: str, progress: Progress) -> Progress:
     return lambda stage, done, total: progress(f"{name}: {stage}", done, total)
 
 
+def _draw_hull(project: Project) -> ColourImage:
+    """Draw the hull as the camera sees it, turned to lie along the picture."""
+    front = next(v for v in standard_views(find_trajectory(project)) if v.name == "front")
+    right, down, away = front.view_from_world
+    x, y, z = (float(part) for part in away)
+    view = View("from below", np.stack([down, -right, away]), front.eye)
+    return render(project.load_mesh(), view, colours=Depth((x, y, z), front.start), size=_SIZE)
+
+
 def _page(ours: Compared, paper: Compared) -> str:
-    """Show both scans side by side."""
-    rows = [
-        (
-            one.name,
-            len(one.project.load_cloud()),
-            round(100 * one.errors.false / max(one.errors.count, 1), 1),
-            round(1e3 * one.errors.rms, 2) if np.isfinite(one.errors.rms) else None,
+    """Show both scans under one another, and the better one to be turned."""
+    both = (paper, ours)
+    hulls = [
+        Picture(
+            f"{folder}.png", f"{one.name}; coloured by the distance", f"{folder}/view/index.html"
         )
-        for one in (paper, ours)
-    ]
-    overlays = [set(one.project.find_overlays()) for one in (paper, ours)]
-    common = sorted(overlays[0] & overlays[1])
-    shown = [f"extract/overlay/{name}.png" for name in common[len(common) // 2 :][:1]]
-    pictures = [
-        Picture(f"{folder}/{path}", f"{one.name}: {caption}", f"{folder}/{opens}" if opens else "")
-        for path, caption, opens in [
-            ("view/front-depth.png", _TURN, "view/index.html"),
-            *((path, "what was found in one frame", "") for path in shown),
-        ]
-        for one in (paper, ours)
+        for one in both
         for folder in [one.project.root.name]
     ]
-    head = ("", "points", "false [%]", "RMS of the others [mm]")
+    model = Model(f"{ours.project.root.name}/view/index.html", f"{ours.name}: drag to turn")
     return render_page(
         "One recording, scanned in two ways",
-        [Section("", [Table(rows, head), Note(_NEXT), Gallery(pictures, is_in_pairs=True)])],
+        [
+            Section("", [Table([_row(one) for one in both], _HEAD), Note(_NEXT)]),
+            Section("The hull from below", [Gallery([one], is_first_large=True) for one in hulls]),
+            Section("To turn and to measure", [model]),
+            Section("What was found in one frame", [Gallery(_frames(both), is_in_pairs=True)]),
+        ],
         subtitle="A ship model's hull in water in which a diver sees a metre and a half, simulated",
     )
+
+
+def _row(one: Compared) -> tuple[str, int, Decimal, Decimal | None]:
+    """Put a scan's errors beside its name."""
+    false = Decimal(f"{100 * one.errors.false / max(one.errors.count, 1):.1f}")
+    rms = Decimal(f"{1e3 * one.errors.rms:.2f}") if np.isfinite(one.errors.rms) else None
+    return one.name, len(one.project.load_cloud()), false, rms
+
+
+def _frames(both: Sequence[Compared]) -> list[Picture]:
+    """Choose a frame from the middle that both have drawn."""
+    overlays = [set(one.project.find_overlays()) for one in both]
+    common = sorted(set.intersection(*overlays))
+    return [
+        Picture(f"{one.project.root.name}/extract/overlay/{name}.png", one.name)
+        for name in common[len(common) // 2 :][:1]
+        for one in both
+    ]
