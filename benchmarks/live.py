@@ -5,7 +5,8 @@ import multiprocessing
 import os
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
@@ -16,7 +17,6 @@ from harness import Figure, tell
 from studio_streams import SDP
 
 from murkscan.capture.field_order import Fields
-from murkscan.distribute import Processes
 from murkscan.extract import AbstractExtractor, GrayGravity, Murk
 from murkscan.io.rig_toml import load_rig
 from murkscan.live import GapMap, LiveFolder, LiveStatus
@@ -36,8 +36,6 @@ PICTURES = 50
 """Pictures that are simulated; a stream shows them forwards and backwards, over and over."""
 COMPARED = 250
 """The same of the dive whose maps are compared."""
-SLOWER = 5
-"""How many times as slowly that one is replayed, so that maps are compared and not machines."""
 SPEED = 0.125
 """Of the camera in the scenes [m/s]."""
 SPACING = 5e-3
@@ -73,17 +71,31 @@ CASES = (
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seconds", type=float, default=60.0, help="length of each stream [s]")
-    seconds = parser.parse_args().seconds
+    parser.add_argument("--only", default="", help="part of the names of the streams; no page then")
+    given = parser.parse_args()
+    seconds = given.seconds
     figures: list[Figure] = []
     with tempfile.TemporaryDirectory() as name:
         root, made = Path(name), dict[str, Path]()
         for case in CASES:
+            if given.only not in case.name:
+                continue
             if case.scene not in made:
                 made[case.scene] = _make(case.scene, root / case.scene)
-            figures += _stream(case, made[case.scene], root / f"dive-{case.port}", seconds)
+            out = root / f"dive-{case.port}"
+            figures += _alone(_stream, case, made[case.scene], out, seconds)
             print("\n".join(one.as_row() for one in figures[-6:]), flush=True)
+        if given.only:
+            return
         figures += _compare(root / "compared")
     tell("live", "Live: how far behind, and how true", figures, note=_note(seconds))
+
+
+def _alone(task: Callable[..., list[Figure]], *arguments: object) -> list[Figure]:
+    """Call a function in a process of its own, as a dive is one: nothing else is in its memory."""
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(1, mp_context=context) as pool:
+        return pool.submit(task, *arguments).result()
 
 
 def _note(seconds: float) -> str:
@@ -97,8 +109,8 @@ def _note(seconds: float) -> str:
         "frames keep; the frames that are looked ahead for are in it. Resident grows from a third "
         "of the stream to its end.\n\n"
         "Gaps are compared in cells of 5 mm, from where the preview begins, of a dive whose "
-        "laser goes out for 50 mm of every 250 mm, with a camera of 360 × 288 px, replayed five "
-        "times as slowly so that maps are compared and not machines: the share of the cells "
+        "laser goes out for 50 mm of every 250 mm, with a camera of 360 × 288 px, replayed: the "
+        "share of the cells "
         "that are gaps in either map, the preview's or the scan's, that are in both."
     )
 
@@ -161,9 +173,9 @@ def _send(path: str, port: int) -> None:
 
 
 def _settings(
-    extractor: AbstractExtractor, fields: Fields, *, speed: float = SPEED, is_scanned: bool = False
+    extractor: AbstractExtractor, fields: Fields, *, is_scanned: bool = False
 ) -> LiveSettings:
-    motion = ConstantSpeed(speed, "y")
+    motion = ConstantSpeed(SPEED, "y")
 
     def stop(began: float) -> ConstantSpeed:
         raise _Over
@@ -176,7 +188,6 @@ def _settings(
         spacing=SPACING,
         fields=fields,
         timeout=120.0,  # the sender is a process of its own, which has to begin first
-        learner=Processes(1),
     )
 
 
@@ -246,9 +257,9 @@ def _compare(out: Path) -> list[Figure]:
         pictures = [f.to_ndarray(format="gray") for f in source.decode(video=0)]
     dark = np.full_like(pictures[0], int(np.median(pictures[0])))
     shown = [dark if number % 50 >= 40 else one for number, one in enumerate(pictures)]
-    _encode(out / "dive.mkv", shown, rate=25 // SLOWER)
+    _encode(out / "dive.mkv", shown, rate=25)
     rig = load_rig(out / "rig.toml")
-    settings = _settings(Murk(), "top-first", speed=SPEED / SLOWER, is_scanned=True)
+    settings = _settings(Murk(), "top-first", is_scanned=True)
     project = run_live(str(out / "dive.mkv"), rig, settings, out=out / "scan")
     live = LiveFolder(out / "scan" / "live")
     gaps, status = live.load_gaps(), live.load_status()

@@ -3,19 +3,20 @@
 import numpy as np
 import pytest
 
-from murkscan.live import PictureWatch
+from murkscan.live import Look, PictureWatch, measure_stripe_width
 from murkscan.types.frame import Frame
 
 NOISE = np.random.default_rng(0).normal(0, 2, (12, 240, 320))
 GLOW = 12 + 40 * np.linspace(1, 0, 240)[:, None] * np.ones((240, 320))
 
 
-def dive(levels, is_seen=True, seconds=5.0, watch=None, start=0.0):
+def dive(levels, is_seen=True, seconds=5.0, watch=None, start=0.0, width=3.0, depth=0.8):
     watch = watch or PictureWatch()
     for number in range(int(25 * seconds)):
         noisy = levels + NOISE[number % len(NOISE)]
         time = start + number / 25
-        watch.look(Frame(np.clip(noisy, 0, 255).astype(np.uint8), number, time), is_seen)
+        look = Look(time, 300 if is_seen else 0, 320, depth, depth, 50.0, width)
+        watch.look(Frame(np.clip(noisy, 0, 255).astype(np.uint8), number, time), look)
     return watch
 
 
@@ -54,3 +55,35 @@ def test_a_lost_stripe_is_told_after_a_second_and_not_before():
 def test_a_laser_that_was_never_on_is_asked_for():
     (said,) = dive(GLOW, is_seen=False).warnings()
     assert "No stripe has been seen yet" in said
+
+
+def test_a_stripe_that_becomes_wide_is_a_fogged_window():
+    fogged = dive(GLOW, width=9.0, seconds=3.0, watch=dive(GLOW), start=5.0)
+    (said,) = fogged.warnings()
+    assert "window is fogged" in said
+    assert dive(GLOW, seconds=3.0, watch=fogged, start=8.0).warnings() == ()
+
+
+def test_a_surface_that_comes_nearer_makes_a_wide_stripe_and_no_fog():
+    assert dive(GLOW, width=7.0, depth=0.3, watch=dive(GLOW), start=5.0).warnings() == ()
+
+
+@pytest.mark.parametrize("axis", ["x", "y"])
+@pytest.mark.parametrize("row_step", [1, 2])
+def test_the_width_of_a_stripe_is_that_at_half_of_its_height(axis, row_step):
+    across = np.arange(240) if axis == "x" else row_step * np.arange(240.0)
+    sigma, middle = 4.0, 101.0
+    level = 10 + 100 * np.exp(-0.5 * ((across - middle) / sigma) ** 2)
+    image = np.tile(level, (240, 1)) if axis == "x" else np.tile(level, (240, 1)).T
+    frame = Frame(image.astype(np.uint8), 0, 0.0, 0, row_step)
+    along = np.arange(30.0, 200)
+    pixels = np.stack([np.full(170, middle), along], axis=1)
+    pixels = pixels if axis == "x" else pixels[:, ::-1]
+    # Full width at half of the height of a Gaussian, to the pixel or the field's two.
+    width = measure_stripe_width(frame, pixels, axis)
+    assert width == pytest.approx(2.355 * sigma, abs=1.0 if axis == "x" else row_step)
+
+
+def test_a_frame_without_a_stripe_has_no_width():
+    frame = Frame(np.zeros((240, 320), np.uint8), 0, 0.0)
+    assert np.isnan(measure_stripe_width(frame, np.zeros((0, 2)), "y"))

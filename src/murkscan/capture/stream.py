@@ -87,20 +87,28 @@ def check_description(source: str) -> None:
 
 
 def _open(source: str, timeout: float) -> Any:
+    """Open a stream; where nothing has come for as long as FFmpeg looks, it looks again."""
+    until = time.monotonic() + timeout
+    while True:
+        stream = _look_once(source, timeout)
+        if stream.streams.video and stream.streams.video[0].width:
+            return stream
+        stream.close()
+        if not stream.streams.video or time.monotonic() > until:
+            raise StreamLost(
+                f"{source} sends no video that can be understood within {timeout:g} s; check that "
+                "it is the address of the picture, and let the camera send keyframes more often."
+            )
+
+
+def _look_once(source: str, timeout: float) -> Any:
     name = source if "://" in source else f"file:{source}"
     try:
-        stream = av.open(
+        return av.open(
             name, options=_OPTIONS, timeout=(timeout, timeout), metadata_errors="replace"
         )
     except (av.error.FFmpegError, OSError) as error:
         raise _silence(source, timeout, error) from error
-    if not stream.streams.video or not stream.streams.video[0].width:
-        stream.close()
-        raise StreamLost(
-            f"{source} sends no video that can be understood within {timeout:g} s; check that it "
-            "is the address of the picture, and let the camera send keyframes more often."
-        )
-    return stream
 
 
 def _silence(source: str, timeout: float, error: Any) -> StreamLost:

@@ -5,6 +5,7 @@ import os
 from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import suppress
 from dataclasses import dataclass
 from itertools import count
 from typing import ClassVar, TypeVar, final
@@ -26,6 +27,8 @@ class Processes(AbstractExecutor):
 
     workers: int | None = None
     """How many; as many as there are cores unless said."""
+    niceness: int = 0
+    """How much they give way to others, 0 to 19; only where the system knows it."""
 
     shares_memory: ClassVar[bool] = False
 
@@ -40,7 +43,9 @@ class Processes(AbstractExecutor):
         while True:
             # A forked process would inherit locks of threads that it has not.
             context = multiprocessing.get_context("spawn")
-            with ProcessPoolExecutor(workers, mp_context=context) as pool:
+            with ProcessPoolExecutor(
+                workers, context, initializer=_give_way, initargs=(self.niceness,)
+            ) as pool:
                 try:
                     yield from _work(pool, task, source, waiting, workers + 1)
                     return
@@ -52,6 +57,12 @@ class Processes(AbstractExecutor):
                         ) from error
                 finally:
                     pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _give_way(niceness: int) -> None:
+    """Make the process that calls give way to others, before it imports what its tasks need."""
+    with suppress(OSError, AttributeError):
+        os.nice(niceness)
 
 
 def _work(

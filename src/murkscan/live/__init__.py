@@ -11,9 +11,12 @@ from .gauges import gauge_stand_off as gauge_stand_off
 from .gauges import gauge_stripe as gauge_stripe
 from .gauges import gauge_water as gauge_water
 from .gauges import warn_of_disk as warn_of_disk
+from .log_watch import PATIENCE as PATIENCE
+from .log_watch import LogWatch as LogWatch
 from .mailbox import Mailbox as Mailbox
 from .recent import RecentLooks as RecentLooks
 from .recent import speed_of as speed_of
+from .sharpness import measure_stripe_width as measure_stripe_width
 from .spread import SpreadFrames as SpreadFrames
 from .status import LiveStatus as LiveStatus
 from .thinned import thin_points as thin_points

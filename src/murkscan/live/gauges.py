@@ -10,6 +10,7 @@ from ..types.background import Attenuation
 from ..types.frame import Frame
 from ..types.laser import Axis
 from ..types.profile import Profile
+from .sharpness import measure_stripe_width
 from .status import Disk, Speed, StandOff, StripeStrength, WaterGauge
 from .working_range import FARTHEST
 
@@ -46,6 +47,8 @@ class Look:
     """Median distance of its points from the camera [m]; NaN without any."""
     signal: float
     """Median height of its stripe [grey levels]; NaN without any."""
+    width: float = math.nan
+    """How wide the stripe is in the picture [px]; NaN without one."""
 
     @classmethod
     def of(cls, frame: Frame, profile: Profile, axis: Axis) -> "Look":
@@ -66,6 +69,7 @@ class Look:
             float(np.median(profile.points[:, 2])),
             float(np.median(np.linalg.norm(profile.points, axis=1))),
             float(np.median(profile.signal)),
+            measure_stripe_width(frame, profile.pixels, axis),
         )
 
     @property

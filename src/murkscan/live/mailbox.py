@@ -40,6 +40,10 @@ class Mailbox(Generic[T]):
             self._changed.wait_for(lambda: self._items or self._is_closed, timeout)
             return self._items.popleft() if self._items else None
 
+    def __len__(self) -> int:
+        """Count what waits."""
+        return len(self._items)
+
     def take_all(self) -> list[T]:
         """Take all that is there."""
         with self._changed:

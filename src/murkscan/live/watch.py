@@ -1,11 +1,13 @@
-"""What a pilot must know at once: the stripe is lost, a lamp is on, the exposure moves."""
+"""What a pilot must know at once: no stripe, a lamp, a fogged window, an exposure that moves."""
 
+import math
 from collections import deque
 
 import numpy as np
 from jaxtyping import Float
 
 from ..types.frame import Frame
+from .gauges import Look
 
 _LIT = 0.2
 """Share of white from which the darker half of a picture is lit by something else."""
@@ -20,6 +22,11 @@ _EVERY = 8
 """Pixels from one place to the next: brightness needs no more."""
 _REFERENCE = 25
 """Frames whose median is what later ones are compared with."""
+_WIDER = 2.0
+"""Width of the stripe, over that of its first seconds, from which the picture is no longer sharp: a
+surface that is brighter or slanted widens it by less."""
+_LEAST_WIDTH = 2.0
+"""Width that counts at least [px]: one pixel is no measure of a factor."""
 _LASTING = 1.0
 """Time for which something must go on before it is told [s]: not for a fish."""
 
@@ -38,22 +45,26 @@ class PictureWatch:
         self._now = 0.0
         self._factors: deque[float] = deque(maxlen=_REFERENCE)
         self._was_seen = False
+        self._sharp: list[tuple[float, float]] = []
+        self._spread: deque[float] = deque(maxlen=_REFERENCE)
 
-    def look(self, frame: Frame, is_seen: bool | None) -> None:
+    def look(self, frame: Frame, look: Look | None) -> None:
         """Take note of a frame.
 
         Args:
             frame: The frame.
-            is_seen: Whether it shows the stripe; None where that was not looked for.
+            look: What was found in it; None where that was not looked for.
         """
         self._now = frame.time
         image = frame.image[::_EVERY, ::_EVERY]
         # Of 16 bits a camera may use 10 or 12: the brightest pixel so far tells.
         self._bits = max(self._bits, int(frame.image.max(initial=0)).bit_length())
         self._note("lamp", float(np.median(image)) > _LIT * self._white)
-        if is_seen is not None:
-            self._note("stripe", not is_seen)
-            self._was_seen |= is_seen
+        if look is not None:
+            self._note("stripe", not look.is_seen)
+            self._was_seen |= look.is_seen
+            if look.is_seen and math.isfinite(look.width * look.depth):
+                self._note("fog", self._is_blurred(look))
         factor = self._compare(frame.first_row, image.astype(float).ravel())
         self._factors.append(factor)
         moved = float(np.median(self._factors))
@@ -71,14 +82,16 @@ class PictureWatch:
             "stripe": lost,
             "lamp": "A lamp is on, or daylight comes in: half of the picture is bright by it. Turn "
             "lamps off or shade the camera, since their light is noise.",
+            "fog": "The stripe has become blurred: the window is fogged or dirty, or the lens is "
+            "out of focus. Wipe it, or let it clear, before going on.",
             "exposure": "The exposure moves: the picture's brightness is no longer that of the "
             "first seconds. Fix exposure and gain, so that signals can be compared.",
         }
-        return tuple(
-            words
-            for name, words in said.items()
-            if self._now - self._since.get(name, self._now) >= _LASTING
-        )
+        told = [n for n in said if self._now - self._since.get(n, self._now) >= _LASTING]
+        if "fog" in told:
+            # A blur spreads light over the picture, which is no other exposure.
+            told = [name for name in told if name != "exposure"]
+        return tuple(said[name] for name in told)
 
     @property
     def _white(self) -> float:
@@ -89,6 +102,18 @@ class PictureWatch:
             self._since.setdefault(name, self._now)
         else:
             self._since.pop(name, None)
+
+    def _is_blurred(self, look: Look) -> bool:
+        """Tell whether the stripe is wider than in the first seconds, nearness allowed for.
+
+        A sheet's thickness in pixels goes as one over the distance; a lens's blur is constant.
+        """
+        if len(self._sharp) < _REFERENCE:
+            self._sharp.append((look.width, look.depth))
+            return False
+        width, depth = np.median(self._sharp, axis=0)
+        self._spread.append(look.width / max(width * max(1.0, depth / look.depth), _LEAST_WIDTH))
+        return float(np.median(self._spread)) > _WIDER
 
     def _compare(self, kind: int, levels: Levels) -> float:
         """Give the factor of brightness against the first frames of the same rows; 1 unknown."""

@@ -39,6 +39,11 @@ class AbstractFollower(abc.ABC):
     def known_until(self) -> float:
         """Recording time up to which poses are known [s]; -inf where none are."""
 
+    @property
+    @abc.abstractmethod
+    def known_from(self) -> float:
+        """Recording time from which poses are known [s]; inf where none are."""
+
     @abc.abstractmethod
     def follow(self, times: Scalars, pictures: Scalars) -> Trajectory | None:
         """Compute world_from_camera at those of some times at which it is known.
@@ -68,6 +73,11 @@ class SteadyFollower(AbstractFollower):
     def known_until(self) -> float:
         """See `AbstractFollower.known_until`."""
         return math.inf
+
+    @property
+    def known_from(self) -> float:
+        """See `AbstractFollower.known_from`."""
+        return -math.inf
 
     def follow(self, times: Scalars, pictures: Scalars) -> Trajectory | None:
         """See `AbstractFollower.follow`; the first time ever asked for is the way's beginning."""
@@ -120,6 +130,11 @@ class LogFollower(AbstractFollower):
     def known_until(self) -> float:
         """See `AbstractFollower.known_until`."""
         return -math.inf if self._log is None else float(self._log.times[-1]) - self._start
+
+    @property
+    def known_from(self) -> float:
+        """See `AbstractFollower.known_from`."""
+        return math.inf if self._log is None else float(self._log.times[0]) - self._start
 
     def follow(self, times: Scalars, pictures: Scalars) -> Trajectory | None:
         """See `AbstractFollower.follow`."""

@@ -99,6 +99,11 @@ class NavigationFollower(AbstractFollower):
         """See `AbstractFollower.known_until`."""
         return -math.inf if self._log is None else float(self._log.times[-1]) - self._start
 
+    @property
+    def known_from(self) -> float:
+        """See `AbstractFollower.known_from`."""
+        return math.inf if self._log is None else float(self._log.times[0]) - self._start
+
     def follow(self, times: Scalars, pictures: Scalars) -> Trajectory | None:
         """See `AbstractFollower.follow`."""
         return sample_log(self._log, times, self._mount, start=self._start, gap=self._gap)

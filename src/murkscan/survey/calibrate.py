@@ -1,7 +1,7 @@
 """The way every calibration goes: look for boards, adjust, judge, save, draw, write the page."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +21,9 @@ from ..io.rig_toml import parse_rig, read_tables, save_calibration
 from .board_views import find_boards
 from .calibrate_drawing import SUFFIX, draw_photos
 from .progress import Progress
+
+_SQUARES = 0.002
+"""Difference of two sizes of squares, over them, from which they are not the same: a ruler's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,6 +122,8 @@ class BoardSession:
         """
         self.unused |= dict.fromkeys(calibration.left_out, "fits far worse than the others")
         verdict, remarks = judge(calibration), self._say_what_lost_its_covariance(calibration)
+        other = tuple(doubt_square(self.board, self.tables, step[0]))
+        verdict = replace(verdict, advice=(*other, *verdict.advice))
         record = record_step(calibration, verdict, self.board, len(self.views), self.tables)
         record["unused"] = self.unused
         if calibration.step in ("port", "laser"):
@@ -151,6 +156,29 @@ class BoardSession:
             self.photos, self.views, self.folder, board=self.board, stripes=self.stripes,
             calibration=calibration, unused=self.unused, progress=self.progress,
         )  # fmt: skip
+
+
+def doubt_square(board: Chessboard, tables: Mapping[str, Any], step: str) -> Iterator[str]:
+    """Say where another step was calibrated on such a board with squares of another size.
+
+    The scale of a laser or a port comes from the squares, and nothing in the photos tells them.
+
+    Args:
+        board: The board of this step.
+        tables: The rig file as it was.
+        step: Which step this is.
+    """
+    steps = tables.get("calibration", {})
+    for name, record in steps.items():
+        if name == step or not isinstance(record, Mapping) or record.get("board") != str(board):
+            continue
+        square, other = board.square * 1e3, float(record.get("square_mm", board.square * 1e3))
+        if abs(square - other) > _SQUARES * square:
+            yield (
+                f"The squares are {square:g} mm here and were {other:g} mm when the {name} was "
+                "calibrated on such a board: one of the two is wrong unless these are two boards, "
+                "and all lengths are wrong with it. Measure ten squares with a ruler."
+            )
 
 
 def parts_of(names: Sequence[str]) -> list[str]:

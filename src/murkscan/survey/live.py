@@ -1,5 +1,6 @@
 """A dive: record it, show it while it goes on, and scan it when it is over."""
 
+import math
 import threading
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -21,7 +22,7 @@ from ..errors import InputError, MissingResult, MurkscanError
 from ..live import LiveFolder, LiveStatus
 from ..project import Project
 from ..types.rig import Rig
-from .live_finder import LiveFinder
+from .live_finder import STALE, LiveFinder
 from .live_settings import LiveSettings
 from .live_source import LiveSource, RecordedSource, ReplayedSource
 from .live_stage import TICK, LiveStage, ScanTeller, Tell
@@ -188,6 +189,7 @@ class _Dive:
         return LiveFinder(
             self.rig, settings.extractor, settings.method, laser=settings.laser,
             learner=settings.learner,
+            stale=STALE if self.recording is None else math.inf,
         )  # fmt: skip
 
 

@@ -1,11 +1,9 @@
 """Find the stripe in frames as they come, by what has been learnt so far."""
 
-import os
 import threading
 import time
 from collections import deque
 from collections.abc import Iterator
-from contextlib import suppress
 from dataclasses import dataclass
 
 from ..capture import ArrivedFrame
@@ -25,16 +23,16 @@ does."""
 _AGAIN, _FACTOR, _RARELY = 5.0, 3.0, 300.0
 """Recording time after which is learnt anew, by what factor that grows, and at most [s]: what is
 fixed to the picture and how murky the water is show better over a longer time."""
-_STALE = 0.12
-"""Age from which a frame is dropped while others wait [s]: the rest of a quarter of a second goes
-to the frames that `Murk` looks ahead."""
+STALE = 0.12
+"""Age from which a frame of a stream is dropped while others wait [s]: the rest of a quarter of a
+second goes to the frames that `Murk` looks ahead."""
 _WAIT = 0.25
 _WAITING = 16
 """Frames that wait at most, whatever their age."""
 _UNREAD = 4000
 """Profiles that wait to be shown at most: more than a minute's."""
-_NICE = 5
-"""By how much learning gives way to the finding."""
+_ROOM = 4
+"""Frames that wait when a replay waits as well."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,12 +58,8 @@ class _Learn:
     extractor: AbstractExtractor
     rig: Rig
     laser: int
-    gives_way: bool
 
     def __call__(self, frames: list[Frame]) -> Background:
-        if self.gives_way:
-            with suppress(OSError, AttributeError):
-                os.nice(_NICE)
         return self.extractor.learn_soon(frames, self.rig, laser=self.laser)
 
 
@@ -80,6 +74,7 @@ class LiveFinder:
         *,
         laser: int,
         learner: AbstractExecutor,
+        stale: float = STALE,
     ) -> None:
         """Begin with nothing learnt.
 
@@ -89,6 +84,7 @@ class LiveFinder:
             method: The way from pixels to points.
             laser: Number of the laser whose stripe is looked for.
             learner: Who learns; a process of its own leaves the finding alone.
+            stale: Age from which a frame is dropped while others wait [s].
         """
         self.frames = Mailbox[ArrivedFrame](_WAITING)
         self.found = Mailbox[Found](_UNREAD)
@@ -103,13 +99,19 @@ class LiveFinder:
         self.failure = ""
         """Why the finding has ended, if by an error of its own."""
         self._rig, self._extractor, self._method = rig, extractor, method
-        self._laser, self._learner = laser, learner
+        self._laser, self._learner, self._stale = laser, learner, stale
         self._spread = SpreadFrames(_LATER)
         self.watch = PictureWatch()
         self._pending = deque[ArrivedFrame]()
         self._learn_next = threading.Event()
         self._due: float | None = None
         self._step = _AGAIN
+
+    @property
+    def is_busy(self) -> bool:
+        """Tell whether more frames would have to be dropped, or would come before the learning."""
+        is_learning = self._due is not None and self.background is None
+        return not self.failure and (is_learning or len(self.frames) >= _ROOM)
 
     def run(self) -> None:
         """Find, until the frames' mailbox is done; an error ends the finding and nothing else."""
@@ -146,7 +148,7 @@ class LiveFinder:
 
     def _tell(self, frame: Frame, stripe: Stripe, profile: Profile, latency: float) -> None:
         look = Look.of(frame, profile, self._rig.laser(self._laser).axis)
-        self.watch.look(frame, look.is_seen)
+        self.watch.look(frame, look)
         self.drawable = frame, stripe
         self.found.put(Found(frame.index, frame.time, frame.row_step, look, profile, latency))
         self.looked += 1
@@ -166,7 +168,7 @@ class LiveFinder:
     def _take(self) -> ArrivedFrame | None:
         """Take the next frame; those that have waited too long go while there are others."""
         arrived = self.frames.get(_WAIT)
-        while arrived is not None and time.monotonic() - arrived.arrived > _STALE:
+        while arrived is not None and time.monotonic() - arrived.arrived > self._stale:
             later = self.frames.get(0.0)
             if later is None:
                 break
@@ -188,7 +190,7 @@ class LiveFinder:
             self._learn_next.set()
 
     def _keep_learning(self) -> None:
-        task = _Learn(self._extractor, self._rig, self._laser, not self._learner.shares_memory)
+        task = _Learn(self._extractor, self._rig, self._laser)
         try:
             while True:
                 self._learn_next.wait()

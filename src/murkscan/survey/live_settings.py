@@ -1,8 +1,10 @@
 """How a dive is recorded, shown and scanned."""
 
+import shutil
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from ..capture.field_order import Fields
 from ..distribute import AbstractExecutor, Processes
@@ -36,8 +38,10 @@ class LiveSettings:
     """How long a lost stream is waited for [s]."""
     beside: Callable[[], AbstractContextManager[None]] = nullcontext
     """Makes what is done while the dive goes on, such as the writing of the vehicle's log."""
-    learner: AbstractExecutor = field(default_factory=lambda: Processes(1))
-    """Who learns while the dive goes on."""
+    learner: AbstractExecutor = field(default_factory=lambda: Processes(1, niceness=19))
+    """Who learns while the dive goes on: what it needs of the processor is what others leave."""
+    find_room: Callable[[Path], int] = lambda folder: shutil.disk_usage(folder).free
+    """Tells how much room a folder's disk has [bytes]."""
 
     @property
     def laser(self) -> int:

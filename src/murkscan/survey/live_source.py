@@ -37,6 +37,7 @@ _LATE = 0.5
 """Age from which a picture is late to be decoded [s]."""
 _IMAGES = 8
 """The same of a camera here, whose pictures are not compressed."""
+_MOMENT = 0.01
 _SILENT = 2.0
 """Time without a picture after which a stream counts as lost [s]."""
 
@@ -46,6 +47,8 @@ class LiveSource(abc.ABC):
 
     word: ClassVar[str]
     """What goes on, in a word."""
+    is_replayed: ClassVar[bool] = False
+    """Whether the pictures are of before."""
 
     def __init__(self) -> None:
         """Begin with nothing."""
@@ -206,9 +209,13 @@ def _check_size(picture: ArrivedPicture, rig: Rig, source: str) -> None:
 
 @final
 class ReplayedSource(LiveSource):
-    """A recording at its own speed; it stays where it is, and nothing is recorded."""
+    """A recording at its own speed, or as fast as it can be looked at; nothing is dropped.
+
+    It stays where it is, and nothing is recorded.
+    """
 
     word: ClassVar[str] = "Replaying."
+    is_replayed: ClassVar[bool] = True
 
     def __init__(self, recording: AbstractRecording) -> None:
         """Take a recording with times."""
@@ -222,6 +229,14 @@ class ReplayedSource(LiveSource):
             due = began + frame.time - start
             if self._stopping.wait(max(due - time.monotonic(), 0.0)):
                 return
+            began += self._wait_for(finder)
             self._last = time.monotonic()
             finder.frames.put(ArrivedFrame(frame, self._last))
             self.recorded = Recorded(frame.index // each + 1, frame.time - start)
+
+    def _wait_for(self, finder: LiveFinder) -> float:
+        """Wait until the finder has room; gives for how long [s]."""
+        began = time.monotonic()
+        while finder.is_busy and not self._stopping.wait(_MOMENT):
+            self._last = time.monotonic()
+        return time.monotonic() - began

@@ -1,6 +1,5 @@
 """Show a dive, tick by tick, from what its source and its finder give."""
 
-import shutil
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -9,7 +8,7 @@ import numpy as np
 
 from ..capture import DiveFolder
 from ..errors import MurkscanError
-from ..live import LiveFolder, LiveStatus, gauge_disk, warn_of_disk
+from ..live import LiveFolder, LiveStatus, LogWatch, gauge_disk, warn_of_disk
 from ..live.gauges import FULL
 from ..live.status import ScanProgress, State
 from ..motion.following import AbstractFollower
@@ -65,6 +64,7 @@ class LiveStage:
             spacing=settings.spacing,
             working=settings.working,
         )
+        self._log = LogWatch(is_replayed=pictures.is_replayed)
         self._ticks, self._failure, self._is_over = 0, "", False
 
     def tick(self) -> None:
@@ -78,6 +78,7 @@ class LiveStage:
                 view.draw(self._finder)
                 if self._ticks % _POINTS == 0 or self._is_over:
                     view.add(self._finder.found.take_all(), self._finder)
+                    self._watch_log()
             state, message = self._say()
             status = view.tell(
                 state,
@@ -108,13 +109,19 @@ class LiveStage:
         follower.follow(np.array([self.pictures.start]), np.zeros(1))
         return follower
 
+    def _watch_log(self) -> None:
+        """See whether the log that is followed and the pictures go by the same clock."""
+        follower, newest = self._view.follower, self._view.newest
+        if follower is not None and newest is not None:
+            self._log.look(newest, follower.known_from, follower.known_until)
+
     def _began(self) -> float:
         """Tell when the recording began; a replayed one has no clock."""
         record = self._folder.record
         return 0.0 if record is None else record.began
 
     def _free(self) -> int:
-        return shutil.disk_usage(self._show.root.parent).free
+        return self._settings.find_room(self._show.root.parent)
 
     def _say(self) -> tuple[State, str]:
         recorded, silence = self.pictures.recorded, self.pictures.silence
@@ -133,6 +140,7 @@ class LiveStage:
 
     def _warn(self, free: int) -> list[str]:
         warnings = [text for text in (self._finder.failure, self._failure) if text]
+        warnings += self._log.warnings()
         recorded = self.pictures.recorded
         return [*warnings, *warn_of_disk(gauge_disk(free, recorded.bytes, recorded.time))]
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..io.images import write_image
 from ..live import (
+    PATIENCE,
     GapMap,
     LiveFolder,
     LiveStatus,
@@ -42,8 +43,6 @@ from ..types.rig import Rig
 from ..types.trajectory import Trajectory
 from .live_finder import Found, LiveFinder
 
-_PATIENCE = 5.0
-"""How long a frame waits for its pose from a log [s]; then it is left out of the preview."""
 _SAMPLE = 50_000
 """Points from which it is learnt how far the light goes."""
 _CELLS = 1_000_000
@@ -79,7 +78,10 @@ class LiveView:
                 as its sheet crosses the picture.
         """
         self._folder, self._rig, self._make_follower = folder, rig, follow
-        self._follower: AbstractFollower | None = None
+        self.follower: AbstractFollower | None = None
+        """What follows the camera; None until there is a frame to be placed."""
+        self.newest: float | None = None
+        """Time of the newest frame that was looked at [s]."""
         self._laser, self._spacing = laser, spacing
         self._axis = rig.laser(laser).axis
         self._working = _narrow(find_working_range(rig, laser), working)
@@ -105,15 +107,15 @@ class LiveView:
         self._waiting += found
         if not self._waiting:
             return
-        self._follower = self._follower or self._make_follower()
-        self._follower.refresh()
-        newest = self._waiting[-1].time
-        until = max(self._follower.known_until, newest - _PATIENCE)
+        self.follower = self.follower or self._make_follower()
+        self.follower.refresh()
+        self.newest = self._waiting[-1].time
+        until = max(self.follower.known_until, self.newest - PATIENCE)
         ready = [one for one in self._waiting if one.time <= until]
         self._waiting = self._waiting[len(ready) :]
         if ready:
             self._place(
-                ready, self._follower, 0.0 if finder.background is None else finder.background.noise
+                ready, self.follower, 0.0 if finder.background is None else finder.background.noise
             )
 
     def draw(self, finder: LiveFinder) -> None:

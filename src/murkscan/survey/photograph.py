@@ -10,6 +10,7 @@ import numpy as np
 from ..calibrate.board.chessboard import Chessboard
 from ..calibrate.board.choosing import PhotoChooser
 from ..calibrate.board.corners import find_board
+from ..calibrate.board.spoiled import name_spoiler
 from ..calibrate.board.view import BoardView
 from ..capture.folder import list_pictures
 from ..errors import FormatError
@@ -71,7 +72,9 @@ def take_photos(
             names.append(_keep(folder, image))
             judged = "take"
             progress("photographs", len(names), count)
-        _show(folder, image, view, _WORDS[judged], names, count)
+        spoiler = name_spoiler(image, view, board)
+        words = f"{_WORDS[judged]}; {spoiler}" if spoiler else _WORDS[judged]
+        _show(folder, image, view, words, names, count)
         if len(names) >= count:
             return PhotosTaken(tuple(names), True)
     return PhotosTaken(tuple(names), False)

@@ -11,7 +11,8 @@ from jaxtyping import Float
 from ...types.arrays import Image, Pixels
 from .chessboard import Chessboard
 from .lattice import Lattice, find_saddles, grow_lattice
-from .refine import LEAST_CORNERS, Grid, refine_corners
+from .refine import LEAST_CORNERS, Grid, refine_corners, smallest_pitch
+from .spoiled import is_cut_off, name_spoiler
 from .view import BoardView
 
 _NUM_SCALES = 4
@@ -45,9 +46,16 @@ def find_board(photo: Image, board: Chessboard, *, name: str = "") -> BoardView:
 
     Returns:
         The view; its corners are of length 0 where the photo does not show the board, with the
-        reason. The first corner is at the dark corner square if just one end has one, otherwise the
-        row of corners points to the right of the photo.
+        reason, and what spoils the photo, if that is seen. The first corner is at the dark corner
+        square if just one end has one, otherwise the row of corners points to the right of the
+        photo.
     """
+    view = _look_for(photo, board, name)
+    spoiler = "" if view.is_found else name_spoiler(photo, view, board)
+    return replace(view, reason=f"{view.reason}: {spoiler}") if spoiler else view
+
+
+def _look_for(photo: Image, board: Chessboard, name: str) -> BoardView:
     best, reason = np.zeros((0, 0, 2)), "shows no chessboard"
     for image, scale in _scales(photo):
         lattice = grow_lattice(find_saddles(image), board.num_corners)
@@ -62,6 +70,8 @@ def find_board(photo: Image, board: Chessboard, *, name: str = "") -> BoardView:
     rows, columns = best.shape[:2]
     if min(rows, columns) < _LEAST_SIDE or seen < LEAST_CORNERS:
         reason = f"shows only {seen} corners of the {board} board"
+        if is_cut_off(best[np.isfinite(best[..., 0])], smallest_pitch(best), photo.shape):
+            reason += ", since the picture's edge cuts it off: show all of it"
         return BoardView(name, np.zeros((0, 2)), reason=reason)
     grid, is_first_dark = _orient(photo, best, board)
     if grid.size == 0:

@@ -1,0 +1,102 @@
+"""The streams and the photographs of `deck_faults.py`."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import av
+import cv2
+import numpy as np
+
+from murkscan.calibrate import Chessboard
+from murkscan.io.images import read_image
+from murkscan.simulate import Recorder, Scene, load_scene
+from murkscan.survey.simulate import simulate_recording
+from murkscan.types.arrays import Image
+
+SQUARE = 0.03
+"""Side of the board's squares [m]."""
+BOARD = Chessboard(9, 6, SQUARE)
+PICTURES, LINES = 20, 15
+"""Pictures of a dive that are simulated, and photographs of the laser's line."""
+
+
+def make_dive(folder: Path, attenuation: float) -> tuple[Path, list[Image]]:
+    """Give the middle of a hull's dive through a small camera: its rig, and its pictures.
+
+    It is simulated once for a folder.
+    """
+    folder = folder / f"dive-{attenuation:g}"
+    if not (folder / "recording.mkv").exists():
+        simulate_recording(_make_scene(attenuation), folder)
+    with av.open(str(folder / "recording.mkv")) as source:
+        pictures = [frame.to_ndarray(format="gray") for frame in source.decode(video=0)]
+    return folder / "rig.toml", pictures
+
+
+def _make_scene(attenuation: float) -> Scene:
+    scene = load_scene("hull-c1.5")
+    camera = scene.rig.camera
+    width, height = (side // 2 for side in camera.size)
+    f, g = camera.focal_length
+    centre = ((width - 1) / 2, (height - 1) / 2)
+    camera = replace(
+        camera, size=(width, height), focal_length=(f / 2, g / 2), principal_point=centre
+    )
+    first = len(scene) // 2
+    return replace(
+        scene,
+        rig=replace(scene.rig, camera=camera),
+        medium=replace(scene.medium, attenuation=attenuation),
+        sensor=replace(scene.sensor, interlaced=False),
+        times=scene.times[first : first + 2 * PICTURES : 2],
+        recorder=Recorder("ffv1"),
+    )
+
+
+def encode(path: Path, pictures: Sequence[Image], rate: int) -> None:
+    """Write pictures without loss, with their times."""
+    with av.open(str(path), "w") as container:
+        stream = container.add_stream("ffv1", rate=rate)
+        stream.height, stream.width = pictures[0].shape
+        stream.pix_fmt = "gray"
+        for number, picture in enumerate(pictures):
+            frame = av.VideoFrame.from_ndarray(picture, "gray")
+            frame.pts, frame.time_base = number, Fraction(1, rate)
+            container.mux(stream.encode(frame))
+        container.mux(stream.encode(None))
+
+
+def make_boards(folder: Path) -> tuple[list[Image], list[Image]]:
+    """Simulate photographs of a board, and of the laser's line on it; once for a folder."""
+    made = []
+    for name, count in (("chessboard", 25), ("chessboard-laser", LINES)):
+        out = folder / name
+        if not out.exists():
+            scene = load_scene(name)
+            simulate_recording(replace(scene, times=scene.times[:count]), out)
+        made.append([read_image(path) for path in sorted((out / "frames").glob("*.png"))])
+    return made[0], made[1]
+
+
+def draw_flat_board(number: int) -> Image:
+    """Draw a board that faces the camera, at a place of its own."""
+    random = np.random.default_rng(number)
+    pitch = random.uniform(34, 50)
+    left, top = random.uniform(60, 150), random.uniform(60, 120)
+    v, u = np.mgrid[:1152, :1440] / 2
+    column, row = np.floor((u - left) / pitch), np.floor((v - top) / pitch)
+    inside = (column >= 0) & (column <= BOARD.columns) & (row >= 0) & (row <= BOARD.rows)
+    dark = inside & ((column + row) % 2 == 0)
+    drawn = cv2.resize(np.where(dark, 40.0, 190.0), (720, 576), interpolation=cv2.INTER_AREA)
+    soft = cv2.GaussianBlur(drawn, (0, 0), 0.7) + random.normal(0, 1.5, drawn.shape)
+    return np.clip(soft, 0, 255).astype(np.uint8)
+
+
+def cut_off(picture: Image, share: float = 0.35) -> Image:
+    """Move a picture to the left until its edge cuts the board; what comes in is plain."""
+    shift = round(share * picture.shape[1])
+    moved = np.full_like(picture, int(np.median(picture)))
+    moved[:, :-shift] = picture[:, shift:]
+    return moved
