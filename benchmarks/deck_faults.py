@@ -1,13 +1,13 @@
 """Faults that spoil a dive or a calibration, put in one at a time: what is said, and how soon."""
 
-import argparse
 import math
 import re
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 
 import cv2
@@ -15,13 +15,18 @@ import numpy as np
 from deck_pictures import (
     BOARD,
     SQUARE,
+    WAYS,
     cut_off,
+    darken,
     draw_flat_board,
     encode,
+    fog_up,
+    light,
     make_boards,
     make_dive,
 )
 from harness import Figure, tell
+from kept import Kept, make_in_pieces
 
 from murkscan.calibrate import Chessboard
 from murkscan.calibrate.board.corners import find_board
@@ -88,16 +93,7 @@ class Fault:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--made", type=Path, help="folder that keeps the simulated pictures")
-    kept = parser.parse_args().made
-    with tempfile.TemporaryDirectory() as scratch:
-        made = kept or Path(scratch) / "made"
-        root = Path(scratch)
-        told = [*_spoil_dives(root / "dives", made), *_spoil_boards(root / "boards", made)]
-        clean = [*_watch_clean_dives(root / "clean", made), *_watch_clean_boards(made)]
-    for one in (*told, *clean):
-        print(one)
+    told, clean = make_in_pieces(_try_all)
     named = [one for one in told if one.is_right and one.seconds <= SOON]
     spoken = [one for one in clean if one.words]
     figures = [
@@ -106,6 +102,34 @@ def main() -> None:
         Figure("clean runs with a warning, of 10", len(spoken), "", at_most=0),
     ]
     tell("deck_faults", "Ten faults, one at a time", figures, note=_note(told))
+
+
+def _try_all(kept: Kept) -> tuple[list[Told], list[Told]]:
+    """Put in each fault, and watch what has none."""
+    with tempfile.TemporaryDirectory() as scratch:
+        root = Path(scratch)
+        faults = {fault.name: partial(_spoil_dive, root, kept.folder, fault) for fault in FAULTS}
+        faults |= {name: partial(_spoil_board, root, kept.folder, name) for name in SPOILT}
+        faults |= {
+            "boards all flat": _hold_flat,
+            "wrong square size": partial(_mistake_square, root, kept.folder),
+        }
+        clean = {
+            f"dive at {murk:g} per m": partial(_watch_clean_dive, root, kept.folder, murk)
+            for murk in CLEAN
+        }
+        clean |= {
+            f"boards {name}": partial(_watch_clean_boards, kept.folder, name) for name in WAYS
+        }
+        return _take(kept, faults), _take(kept, clean)
+
+
+def _take(kept: Kept, runs: Mapping[str, Callable[[], Told]]) -> list[Told]:
+    taken = []
+    for name, run in runs.items():
+        taken.append(Told(**kept.take(name.replace(" ", "-"), lambda run=run: asdict(run()))))
+        print(taken[-1], flush=True)
+    return taken
 
 
 def _note(told: Sequence[Told]) -> str:
@@ -119,47 +143,26 @@ def _note(told: Sequence[Told]) -> str:
     ])  # fmt: skip
 
 
-def _lamp(image: Image, since: float) -> Image:
-    random = np.random.default_rng(round(1e3 * since))
-    return np.clip(image + random.normal(95.0, 4.0, image.shape), 0, 255).astype(np.uint8)
-
-
-def _dark(image: Image, since: float) -> Image:
-    random = np.random.default_rng(round(1e3 * since))
-    level = float(np.percentile(image, 1))
-    return np.clip(random.normal(level, 1.5, image.shape), 0, 255).astype(np.uint8)
-
-
-def _fog(image: Image, since: float) -> Image:
-    """Drops on the window: most of the light goes astray by some pixels."""
-    share = 0.85 * min(since, 1.0)
-    blurred = cv2.GaussianBlur(image, (0, 0), 4.0)
-    return cv2.addWeighted(image, 1 - share, blurred, 0.9 * share, 4.0 * share)
-
-
 def _nothing(image: Image, since: float) -> Image:
     return image
 
 
 FAULTS = (
-    Fault("lamp on", _lamp, "lamp is on"),
-    Fault("laser off", _dark, "stripe is lost"),
-    Fault("window fogged", _fog, "window is fogged"),
+    Fault("lamp on", light, "lamp is on"),
+    Fault("laser off", darken, "stripe is lost"),
+    Fault("window fogged", fog_up, "window is fogged"),
     Fault("wrong clock", _nothing, "log's clock does not fit", log_is_off=True),
     Fault("disk nearly full", _nothing, "disk is nearly full", disk_fills=True),
 )
 
 
-def _spoil_dives(root: Path, made: Path) -> Iterator[Told]:
+def _spoil_dive(root: Path, made: Path, fault: Fault) -> Told:
     rig_file, pictures = make_dive(made, 1.5)
-    for fault in FAULTS:
-        shown = list(_shown(pictures))
-        spoilt = [
-            image if k < GOOD else fault.spoil(image, (k - GOOD) / RATE)
-            for k, image in enumerate(shown)
-        ]
-        told = _watch(root, fault.name, rig_file, spoilt, fault)
-        yield _judge(fault, told)
+    spoilt = [
+        image if number < GOOD else fault.spoil(image, (number - GOOD) / RATE)
+        for number, image in enumerate(_shown(pictures))
+    ]
+    return _judge(fault, _watch(root, fault.name, rig_file, spoilt, fault))
 
 
 def _shown(pictures: Sequence[Image]) -> Iterator[Image]:
@@ -215,7 +218,7 @@ def _write_log(path: Path) -> Path:
 def _judge(fault: Fault, told: Sequence[LiveStatus]) -> Told:
     spoken = [status for status in told if status.warnings]
     if not spoken:
-        return Told(fault.name, "", math.nan, False)
+        return Told(fault.name, "", 0.0, False)
     words = " ".join(spoken[0].warnings)
     # A wrong clock is there from the first profile on.
     began = GOOD / RATE
@@ -228,30 +231,28 @@ def _judge(fault: Fault, told: Sequence[LiveStatus]) -> Told:
     )  # fmt: skip
 
 
-def _watch_clean_dives(root: Path, made: Path) -> Iterator[Told]:
-    for murk in CLEAN:
-        rig_file, pictures = make_dive(made, murk)
-        told = _watch(root, f"dive-{murk:g}", rig_file, list(_shown(pictures)), None)
-        spoken = [" ".join(status.warnings) for status in told if status.warnings]
-        yield Told(f"dive at {murk:g} /m", spoken[0] if spoken else "", math.nan, not spoken)
+def _watch_clean_dive(root: Path, made: Path, murk: float) -> Told:
+    rig_file, pictures = make_dive(made, murk)
+    told = _watch(root, f"dive-{murk:g}", rig_file, list(_shown(pictures)), None)
+    spoken = [" ".join(status.warnings) for status in told if status.warnings]
+    return Told(f"dive at {murk:g} /m", spoken[0] if spoken else "", 0.0, not spoken)
 
 
-def _spoil_boards(root: Path, made: Path) -> Iterator[Told]:
-    """Photograph boards with a fault each."""
-    root.mkdir()
-    boards, lines = make_boards(made)
-    good = boards[3]
-    white = cv2.circle(good.copy(), (380, 300), 90, 255, -1)
-    cases = (
-        ("glare", white, "glare"),
-        ("blur", cv2.GaussianBlur(good, (0, 0), 5.0), "not sharp|blurred"),
-        ("board cut off", cut_off(good), "edge cuts"),
-    )
-    for name, picture, right in cases:
-        words, seconds = _photograph(root / name.replace(" ", "-"), [good] * 3, picture)
-        yield Told(name, words, seconds, re.search(right, words) is not None)
-    yield _hold_flat()
-    yield _mistake_square(root, boards, lines)
+SPOILT: dict[str, tuple[Callable[[Image], Image], str]] = {
+    "glare": (lambda good: cv2.circle(good.copy(), (380, 300), 90, 255, -1), "glare"),
+    "blur": (lambda good: cv2.GaussianBlur(good, (0, 0), 5.0), "not sharp|blurred"),
+    "board cut off": (cut_off, "edge cuts"),
+}
+"""What spoils a photograph, and what names it."""
+
+
+def _spoil_board(root: Path, made: Path, name: str) -> Told:
+    """Photograph a board, and then one with a fault."""
+    boards, _ = make_boards(made)
+    spoil, right = SPOILT[name]
+    folder = root / name.replace(" ", "-")
+    words, seconds = _photograph(folder, [boards[3]] * 3, spoil(boards[3]))
+    return Told(name, words, seconds, re.search(right, words) is not None)
 
 
 def _photograph(folder: Path, before: Sequence[Image], spoilt: Image) -> tuple[str, float]:
@@ -281,9 +282,9 @@ def _hold_flat() -> Told:
     return Told("boards all flat", judged.verdict, spent, is_right)
 
 
-def _mistake_square(root: Path, boards: Sequence[Image], lines: Sequence[Image]) -> Told:
+def _mistake_square(root: Path, made: Path) -> Told:
     """Calibrate the camera with the right squares, and the laser with wrong ones."""
-    for name, photos in (("camera", boards), ("laser", lines)):
+    for name, photos in zip(("camera", "laser"), make_boards(made), strict=True):
         (root / name).mkdir()
         for number, photo in enumerate(photos):
             write_image(root / name / f"{number:02d}.png", photo)
@@ -297,25 +298,13 @@ def _mistake_square(root: Path, boards: Sequence[Image], lines: Sequence[Image])
     return Told("wrong square size", words, spent, "squares are 33 mm" in words)
 
 
-def _watch_clean_boards(made: Path) -> Iterator[Told]:
-    boards, _ = make_boards(made)
-    random = np.random.default_rng(0)
-    ways: dict[str, Callable[[Image], Image]] = {
-        "as they come": lambda image: image,
-        "darker": lambda image: (0.6 * image).astype(np.uint8),
-        "noisier": lambda image: np.clip(
-            image + random.normal(0, 4, image.shape), 0, 255
-        ).astype(np.uint8),
-        "softer": lambda image: cv2.GaussianBlur(image, (0, 0), 0.8),
-        "mirrored": lambda image: np.ascontiguousarray(image[:, ::-1]),
-    }  # fmt: skip
-    for name, change in ways.items():
-        photos = [change(image) for image in boards]
-        said = [words for words in map(_say_of_photo, photos) if words]
-        views = [find_board(photo, BOARD) for photo in photos]
-        judged = judge_so_far(views, BOARD, (photos[0].shape[1], photos[0].shape[0]))
-        said += [] if judged.is_good else [judged.verdict]
-        yield Told(f"boards {name}", said[0] if said else "", math.nan, not said)
+def _watch_clean_boards(made: Path, name: str) -> Told:
+    photos = [WAYS[name](image) for image in make_boards(made)[0]]
+    said = [words for words in map(_say_of_photo, photos) if words]
+    views = [find_board(photo, BOARD) for photo in photos]
+    judged = judge_so_far(views, BOARD, (photos[0].shape[1], photos[0].shape[0]))
+    said += [] if judged.is_good else [judged.verdict]
+    return Told(f"boards {name}", said[0] if said else "", 0.0, not said)
 
 
 def _say_of_photo(photo: Image) -> str:

@@ -1,6 +1,6 @@
 """The streams and the photographs of `deck_faults.py`."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -100,3 +100,35 @@ def cut_off(picture: Image, share: float = 0.35) -> Image:
     moved = np.full_like(picture, int(np.median(picture)))
     moved[:, :-shift] = picture[:, shift:]
     return moved
+
+
+def light(image: Image, since: float) -> Image:
+    """Switch a lamp on."""
+    random = np.random.default_rng(round(1e3 * since))
+    return np.clip(image + random.normal(95.0, 4.0, image.shape), 0, 255).astype(np.uint8)
+
+
+def darken(image: Image, since: float) -> Image:
+    """Switch the laser off."""
+    random = np.random.default_rng(round(1e3 * since))
+    level = float(np.percentile(image, 1))
+    return np.clip(random.normal(level, 1.5, image.shape), 0, 255).astype(np.uint8)
+
+
+def fog_up(image: Image, since: float) -> Image:
+    """Fog the window within a second: most of the light goes astray by some pixels."""
+    share = 0.85 * min(since, 1.0)
+    blurred = cv2.GaussianBlur(image, (0, 0), 4.0)
+    return cv2.addWeighted(image, 1 - share, blurred, 0.9 * share, 4.0 * share)
+
+
+WAYS: dict[str, Callable[[Image], Image]] = {
+    "as they come": lambda image: image,
+    "darker": lambda image: (0.6 * image).astype(np.uint8),
+    "noisier": lambda image: np.clip(
+        image + np.random.default_rng(0).normal(0, 4, image.shape), 0, 255
+    ).astype(np.uint8),
+    "softer": lambda image: cv2.GaussianBlur(image, (0, 0), 0.8),
+    "mirrored": lambda image: np.ascontiguousarray(image[:, ::-1]),
+}  # fmt: skip
+"""Photographs that are good as well."""

@@ -1,11 +1,12 @@
 """The plan against the simulator, on rigs and waters drawn at random."""
 
 import math
-import sys
 import time
+from functools import partial
 
 import numpy as np
 from harness import Figure, tell
+from kept import Kept, make_in_pieces
 
 from murkscan.errors import NotEnoughData
 from murkscan.optics.beam import Light
@@ -151,18 +152,23 @@ def true_limit(depths: np.ndarray, bound: np.ndarray) -> float:
     return float(depths[last] + share * (depths[last + 1] - depths[last]))
 
 
-def main() -> None:
-    wanted = int(sys.argv[1]) if len(sys.argv) > 1 else COUNT
-    forecast(draw_rig(np.random.default_rng(0)), draw_conditions(np.random.default_rng(0)))
-    results, seed, blind = [], 0, 0
-    while len(results) < wanted:
+def _compare_all(kept: Kept) -> tuple[list[dict[str, float]], int]:
+    """Compare rigs until there are as many as wanted; tells how many more would see nothing."""
+    results, seed, blind = list[dict[str, float]](), 0, 0
+    while len(results) < COUNT:
         seed += 1
-        result = compare(seed)
+        result = kept.take(f"{seed:03d}", partial(compare, seed))
         if result is None:
             blind += 1
             continue
         results.append(result)
         print(seed, {name: round(value, 3) for name, value in result.items()}, flush=True)
+    return results, blind
+
+
+def main() -> None:
+    forecast(draw_rig(np.random.default_rng(0)), draw_conditions(np.random.default_rng(0)))
+    results, blind = make_in_pieces(_compare_all)
     sigma, beyond, share, worst, limit, seconds = (
         np.array([abs(one[name]) for one in results])
         for name in ("sigma", "sigma_beyond", "share", "share_worst", "limit", "seconds")
@@ -183,7 +189,7 @@ def main() -> None:
         Figure("a forecast, slowest rig", seconds.max(), "s of CPU", at_most=1.0),
     ]
     note = (
-        f"{wanted} rigs and waters drawn at random (c 0.2 to 5 /m; with and without windows, "
+        f"{COUNT} rigs and waters drawn at random (c 0.2 to 5 /m; with and without windows, "
         f"progressive and interlaced, 10 to 200 mW); {blind} more would see nothing and say so. A "
         "plain wall, simulated at nine distances each, six of them within 25 % of the range limit; "
         f"found is what has a bound of {VISIBLE:g} px or better in the simulator's truth. σ is the "

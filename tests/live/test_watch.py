@@ -84,6 +84,17 @@ def test_the_width_of_a_stripe_is_that_at_half_of_its_height(axis, row_step):
     assert width == pytest.approx(2.355 * sigma, abs=1.0 if axis == "x" else row_step)
 
 
+def test_a_stripe_that_is_slanted_or_overexposed_is_no_wider():
+    u, v = np.meshgrid(np.arange(320.0), np.arange(240.0))
+    slanted = (u - v - 40) / np.sqrt(2)
+    image = 10 + 100 * np.exp(-0.5 * (slanted / 3.0) ** 2)
+    image[:100] = np.minimum(10 + 2000 * np.exp(-0.5 * (slanted[:100] / 3.0) ** 2), 255)
+    rows = np.arange(30.0, 200)
+    frame = Frame(image.astype(np.uint8), 0, 0.0)
+    width = measure_stripe_width(frame, np.stack([rows + 40, rows], axis=1), "x")
+    assert width == pytest.approx(2.355 * 3.0, abs=1.0)
+
+
 def test_a_frame_without_a_stripe_has_no_width():
     frame = Frame(np.zeros((240, 320), np.uint8), 0, 0.0)
     assert np.isnan(measure_stripe_width(frame, np.zeros((0, 2)), "y"))

@@ -18,6 +18,17 @@ PATIENCE = 60_000
 """Milliseconds in which a small scan ends on a busy machine."""
 
 
+_CLICK = """() => {
+  const app = window.murkscan, { canvas } = app.stage, box = canvas.getBoundingClientRect();
+  const [x, y] = app.stage.project(app.model.positions.slice(3 * 800, 3 * 800 + 3));
+  const at = { clientX: box.left + x, clientY: box.top + y, isPrimary: true, button: 0,
+    pointerType: "mouse", bubbles: true, pointerId: 1 };
+  canvas.dispatchEvent(new PointerEvent("pointerdown", at));
+  canvas.dispatchEvent(new PointerEvent("pointerup", at));
+}"""
+"""Clicks on a point of the model, wherever it is drawn."""
+
+
 @contextmanager
 def serving(folder, port="0"):
     """Run the command, and give the address that it says and the process."""
@@ -81,6 +92,41 @@ def test_what_is_measured_on_the_model_is_taken_by_the_command_for_it(opened):
     measure = page.locator(".measure", has_text="murkscan measure hull distance --from-m")
     measure.wait_for(timeout=PATIENCE)
     assert "mm" in measure.inner_text()
+    assert faults == []
+
+
+def test_a_ball_is_picked_by_a_click_on_the_model(opened):
+    page, faults, _ = opened
+    frame = next(one for one in page.frames if "view/index.html" in one.url)
+    page.get_by_role("button", name="Sphere", exact=True).click()
+    page.get_by_role("button", name="Pick", exact=True).click()
+    page.get_by_role("button", name="Click in the model").wait_for()
+    # A click beside the model gives no place, and the next one is waited for.
+    frame.evaluate("window.parent.postMessage({ place: '<b>1,2,3' }, '*')")
+    frame.evaluate(_CLICK)
+    field = page.locator("input[name=near-m]")
+    page.wait_for_function("() => document.querySelector('input[name=near-m]').value")
+    assert re.fullmatch(r"-?[\d.]+,-?[\d.]+,-?[\d.]+", field.input_value())
+    page.get_by_text(f"measure hull sphere --near-m={field.input_value()}").or_(
+        page.get_by_text(f"measure hull sphere --near-m {field.input_value()}")
+    ).wait_for()
+    assert page.get_by_role("button", name="Pick", exact=True).count() == 1
+    assert faults == []
+
+
+def test_a_report_is_headed_and_acceptance_and_control_points_are_offered(opened, folder):
+    page, faults, _ = opened
+    (folder / "acceptance.toml").write_text("[[ball]]\n")
+    page.reload()
+    page.locator("input[name=client]").fill("Harbour office")
+    page.locator("input[name=place]").fill("Pier 3")
+    page.get_by_text("murkscan report hull --client 'Harbour office' --place 'Pier 3'").wait_for()
+    page.locator("input[name=test]").fill("acceptance.toml")
+    page.get_by_text("murkscan accept hull --test acceptance.toml").wait_for()
+    page.locator("input[name=control]").fill("acceptance.toml")
+    page.locator("input[name=crs]").fill("EPSG:25832")
+    typed = "murkscan georeference hull --control acceptance.toml --crs EPSG:25832"
+    page.get_by_text(typed).wait_for()
     assert faults == []
 
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from jaxtyping import Float
 
-from ..types.arrays import Pixels
+from ..types.arrays import Pixels, Scalars
 from ..types.frame import Frame
 from ..types.laser import Axis
 
@@ -13,12 +13,18 @@ _LINES = 64
 """Scan lines that are looked at, evenly spread: a median needs no more."""
 _REACH = 24
 """How far a stripe is followed across itself [px of the frame]: eight times a usual one's width."""
+_FEWEST = 3
+"""Centres that a stripe has at least."""
+_UNSPOILT = 0.95
+"""Share of white from which a stripe counts as overexposed."""
 
 Profiles = Float[np.ndarray, "lines places"]
 
 
 def measure_stripe_width(frame: Frame, pixels: Pixels, axis: Axis) -> float:
-    """Measure how wide the stripe is: its area above half of its height, over its height.
+    """Measure how wide the stripe is, across its own direction, at half of its height.
+
+    Scan lines in which it is overexposed, and so wide without a blur, do not count.
 
     Args:
         frame: The frame.
@@ -26,18 +32,31 @@ def measure_stripe_width(frame: Frame, pixels: Pixels, axis: Axis) -> float:
         axis: The camera axis along which the laser sits.
 
     Returns:
-        The median over the scan lines [px of the full frame]; NaN where the frame shows no stripe.
+        The median over the scan lines [px of the full frame]; NaN where none tells it.
     """
-    if len(pixels) == 0:
+    if len(pixels) < _FEWEST:
         return math.nan
-    some = pixels[:: max(len(pixels) // _LINES, 1)]
+    chosen = np.arange(0, len(pixels), max(len(pixels) // _LINES, 1))
+    some = pixels[chosen]
     rows = (some[:, 1] - frame.first_row) / frame.row_step
     profiles = _cut(frame.image, some[:, 0], rows, 0 if axis == "y" else 1)
-    height = profiles.max(axis=1) - np.median(profiles, axis=1)
-    above = profiles - np.median(profiles, axis=1, keepdims=True) > height[:, None] / 2
-    widths = _around_the_middle(above)
+    peaks, grounds = profiles.max(axis=1), np.median(profiles, axis=1)
+    above = profiles > ((peaks + grounds) / 2)[:, None]
+    white = 2.0 ** int(frame.image.max()).bit_length() - 1
+    usable = (peaks > grounds) & (peaks < _UNSPOILT * white)
+    if not usable.any():
+        return math.nan
     step = frame.row_step if axis == "y" else 1
-    return float(np.median(widths[height > 0]) * step) if np.any(height > 0) else math.nan
+    widths = _around_the_middle(above) * step * _cosines(pixels, axis)[chosen]
+    return float(np.median(widths[usable]))
+
+
+def _cosines(pixels: Pixels, axis: Axis) -> Scalars:
+    """Compute by what the stripe is narrower across itself than along its scan lines."""
+    across, along = pixels.T if axis == "x" else pixels.T[::-1]
+    steps = np.gradient(along)
+    slopes = np.gradient(across) / np.where(np.abs(steps) > 0, steps, 1.0)
+    return 1 / np.hypot(1.0, slopes)
 
 
 def _cut(image: np.ndarray, u: np.ndarray, v: np.ndarray, across: int) -> Profiles:

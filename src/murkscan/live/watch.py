@@ -22,9 +22,9 @@ _EVERY = 8
 """Pixels from one place to the next: brightness needs no more."""
 _REFERENCE = 25
 """Frames whose median is what later ones are compared with."""
-_WIDER = 2.0
-"""Width of the stripe, over that of its first seconds, from which the picture is no longer sharp: a
-surface that is brighter or slanted widens it by less."""
+_WIDER = 1.6
+"""Width of the stripe, over that of its first seconds, from which the picture is no longer sharp:
+what is measured is across the line, where it is not overexposed, and nearness is allowed for."""
 _LEAST_WIDTH = 2.0
 """Width that counts at least [px]: one pixel is no measure of a factor."""
 _LASTING = 1.0
@@ -88,8 +88,8 @@ class PictureWatch:
             "first seconds. Fix exposure and gain, so that signals can be compared.",
         }
         told = [n for n in said if self._now - self._since.get(n, self._now) >= _LASTING]
-        if "fog" in told:
-            # A blur spreads light over the picture, which is no other exposure.
+        if {"fog", "stripe"} & set(self._since):
+            # A blur spreads light over the picture, and a laser that is off takes it away.
             told = [name for name in told if name != "exposure"]
         return tuple(said[name] for name in told)
 

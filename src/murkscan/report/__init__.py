@@ -10,6 +10,8 @@ from .coverage_cells import CellSums as CellSums
 from .directions import SurfaceDirections as SurfaceDirections
 from .even_sample import EvenSample as EvenSample
 from .gathering import measure_cloud as measure_cloud
+from .heading import NO_HEADING as NO_HEADING
+from .heading import Heading as Heading
 from .histogram import Histogram as Histogram
 from .html import as_html as as_html
 from .merged import MergedSummary as MergedSummary

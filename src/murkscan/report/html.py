@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from ..page import Block, Facts, Gallery, Note, Picture, Section, Table, format_cell, render_page
 from .charts import depth_chart, points_chart, signal_chart
 from .distribution_charts import sigma_distribution, signal_distribution
+from .heading import NO_HEADING, Heading
 from .placed import placed_sections
 from .recorded import Model, Shown
 from .sections import (
@@ -33,7 +34,7 @@ _NO_MAP = (
 )
 
 
-def as_html(summary: ScanSummary) -> str:
+def as_html(summary: ScanSummary, heading: Heading = NO_HEADING) -> str:
     """Make report/index.html."""
     sections = [
         Section("", _headline(summary)),
@@ -74,7 +75,9 @@ def as_html(summary: ScanSummary) -> str:
     frames = [shown for shown in summary.pictures if shown.is_frame]
     if frames:
         sections.append(Section("Frames", [gallery(frames)]))
-    return render_page("Scan report", sections + _record(summary), subtitle=summary.recorded.name)
+    subtitle = heading.subtitle(summary.recorded.name)
+    title = heading.title or "Scan report"
+    return render_page(title, sections + _record(summary), subtitle=subtitle)
 
 
 def _record(summary: ScanSummary) -> list[Section]:

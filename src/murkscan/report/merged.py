@@ -7,6 +7,7 @@ from typing import Any
 from ..page import Block, Facts, Note, Section, Table, format_cell, render_page
 from ..types.rig import Rig
 from .calibrated import CalibrationStep
+from .heading import NO_HEADING, Heading
 from .html import gallery, size_facts, uncertainty_blocks
 from .placed import placed_as_plain, placed_sections
 from .plain import as_uncertainty
@@ -108,7 +109,7 @@ class MergedSummary:
     """Whose errors no interval knows, in sentences."""
 
 
-def merged_as_html(summary: MergedSummary) -> str:
+def merged_as_html(summary: MergedSummary, heading: Heading = NO_HEADING) -> str:
     """Make report/index.html of a merged scan."""
     sections = [Section("", _headline(summary)), Section("Passes", _passes(summary))]
     if summary.pairs:
@@ -128,14 +129,16 @@ def merged_as_html(summary: MergedSummary) -> str:
         Section("Versions", [Table(list(summary.versions.items()))]),
         Section("Time taken", [Table([(k, f"{s:.1f} s") for k, s in summary.durations.items()])]),
     ]
-    return render_page("Report of merged passes", sections, subtitle=summary.name)
+    title = heading.title or "Report of merged passes"
+    return render_page(title, sections, subtitle=heading.subtitle(summary.name))
 
 
-def merged_as_json(summary: MergedSummary) -> dict[str, Any]:
+def merged_as_json(summary: MergedSummary, heading: Heading = NO_HEADING) -> dict[str, Any]:
     """Give the content of report.json: plain values, units in the keys, None for what is not."""
     model = summary.model
     return {
         "format": 1,
+        **heading.as_plain(),
         "merged": [_as_plain_pass(one) for one in summary.passes],
         "disagreement": [_as_plain_pair(one) for one in summary.pairs],
         "points": {"in_cloud": model.points},

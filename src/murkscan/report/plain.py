@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from .heading import NO_HEADING, Heading
 from .placed import placed_as_plain
 from .plain_numbers import as_list, as_plain, round_off
 from .plain_verdicts import as_plain_verdicts
@@ -15,11 +16,12 @@ from .walls import walls_as_plain
 from .words import rig_rows
 
 
-def as_json(summary: ScanSummary) -> dict[str, Any]:
+def as_json(summary: ScanSummary, heading: Heading = NO_HEADING) -> dict[str, Any]:
     """Give the content of report.json: plain values, units in the keys, None for what is not."""
     model = summary.model
     return {
         "format": 1,
+        **heading.as_plain(),
         **_counts(summary),
         "mesh": {
             "vertices": model.vertices,

@@ -108,7 +108,9 @@ FORMS: dict[str, _Form] = {
     "cloud": _Form({"out": "in"}, _flags("export", "out")),
     "mesh": _Form({"out": "in"}, _flags("mesher close-holes-mm faces colour")),
     "view": _Form({"out": "in"}, _flags("with", "in") | _flags("title deviation")),
-    "report": _Form({"out": "in"}, _flags("spacing-mm")),
+    "report": _Form({"out": "in"}, _flags("spacing-mm title client place")),
+    "accept": _Form({"out": "in"}, _flags("test", "in")),
+    "georeference": _Form({"out": "in"}, _flags("control", "in") | _flags("crs")),
     "check": _Form({"out": "in"}, {}),
     **{
         f"measure {kind}": _Form({"out": "in"}, flags, kind)

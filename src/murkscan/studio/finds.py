@@ -13,6 +13,8 @@ _MOST = 1000
 """Folders that are looked at, so that a home folder or a network disk cannot hold the page up."""
 _LONGEST_RIG = 2_000_000
 """Bytes of a rig file, at most: a long covariance has a tenth of it."""
+_OF_RIG = frozenset({"[camera]", "[[laser]]", "[calibration]"})
+_OF_TEST = frozenset({"[[ball]]", "[[bar]]", "[[plate]]", "[[step]]", "[limits]"})
 _VIDEOS = {".mkv", ".mp4", ".mov", ".avi", ".ts", ".mts", ".m4v", ".h264", ".mcap", ".bag", ".sdp"}
 _PHOTOS = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".pgm"}
 _LOGS = {".csv", ".txt", ".tum", ".tlog", ".nmea", ".mcap", ".bag"}
@@ -34,6 +36,8 @@ class Found:
     """Folders of pictures, and videos."""
     logs: list[str] = field(default_factory=list)
     meshes: list[str] = field(default_factory=list)
+    tests: list[str] = field(default_factory=list)
+    """Files of acceptance tests."""
     is_cut: bool = False
     """Whether there was more than is looked at."""
 
@@ -61,6 +65,7 @@ def look_around(sandbox: Sandbox) -> Found:
         found.photos,
         found.logs,
         found.meshes,
+        found.tests,
     ):
         names.sort()
     return found
@@ -86,8 +91,10 @@ def _sort_in(found: Found, sandbox: Sandbox, folder: Path, files: list[str]) -> 
         found.photos.append(sandbox.name(folder))
     for name in files:
         suffix, path = Path(name).suffix.lower(), folder / name
-        if suffix == ".toml" and _is_rig(path):
+        if suffix == ".toml" and _has_table(path, _OF_RIG):
             found.rigs.append(sandbox.name(path))
+        if suffix == ".toml" and _has_table(path, _OF_TEST):
+            found.tests.append(sandbox.name(path))
         if suffix in _VIDEOS:
             found.recordings.append(sandbox.name(path))
             found.photos.append(sandbox.name(path))
@@ -97,12 +104,12 @@ def _sort_in(found: Found, sandbox: Sandbox, folder: Path, files: list[str]) -> 
             found.meshes.append(sandbox.name(path))
 
 
-def _is_rig(path: Path) -> bool:
-    """Tell whether a TOML file has the tables of a rig; a scene has a rig's inside."""
+def _has_table(path: Path, tables: frozenset[str]) -> bool:
+    """Tell whether a TOML file has one of some tables; a scene has those of a rig inside others."""
     try:
         if not path.is_file() or path.stat().st_size > _LONGEST_RIG:
             return False
         lines = path.read_text("utf-8-sig", errors="replace").splitlines()
     except OSError:
         return False
-    return any(line.strip() in ("[camera]", "[[laser]]", "[calibration]") for line in lines)
+    return any(line.strip() in tables for line in lines)

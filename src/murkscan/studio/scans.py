@@ -16,7 +16,7 @@ _EXPORTS = (
     *("*.ply", "*.glb", "*.stl", "*.obj", "*.laz", "*.las", "*.e57", "*.dxf", "*.svg", "*.csv"),
     *("*.json", "*.mp4"),
 )
-_FOLDERS = ("cloud", "mesh", "motion", "measure", "report", "view")
+_FOLDERS = ("cloud", "mesh", "motion", "measure", "report", "view", "accept")
 _MOST = 60
 """Files that are listed."""
 
@@ -46,6 +46,7 @@ def tell_scan(sandbox: Sandbox, name: str) -> dict[str, Any]:
         "measures": _measures(sandbox, root),
         "page": _page(sandbox, root / "view" / "index.html"),
         "report": _page(sandbox, root / "report" / "index.html"),
+        "accepted": _page(sandbox, root / "accept" / "index.html"),
         "picture": _page(sandbox, root / "view" / "isometric.png"),
         "files": _files(sandbox, root),
     }

@@ -21,7 +21,9 @@ from ..project import (
 )
 from ..report import (
     AT_95,
+    NO_HEADING,
     CalibrationStep,
+    Heading,
     MergedSummary,
     ScanSummary,
     Shown,
@@ -41,13 +43,18 @@ from .stage_runner import run_stage
 
 
 def write_report(
-    project: Project, *, spacing: float | None = None, progress: Progress = silent
+    project: Project,
+    *,
+    spacing: float | None = None,
+    heading: Heading = NO_HEADING,
+    progress: Progress = silent,
 ) -> ReportResult:
     """Run the report stage, from what the other stages have left.
 
     Args:
         project: A scan with all stages up to view finished.
         spacing: Wanted spacing of the points [m]; gaps are judged by the scan's own unless given.
+        heading: What the page is called, and for whom and where the scan was made.
         progress: Told when it begins and ends.
 
     Raises:
@@ -65,13 +72,14 @@ def write_report(
     told = replace(project.load_scan(), started=None)
     inputs = {"view": project.finished(VIEW).digest, "scan": digest(as_plain(told))}
     inputs |= digest_beside(project)
-    stage = project.stage(REPORT, settings={"spacing": spacing}, inputs=inputs)
+    said = {key: word for key, word in heading.as_plain().items() if word}
+    stage = project.stage(REPORT, settings={"spacing": spacing} | said, inputs=inputs)
 
     def make(summary: ScanSummary | MergedSummary) -> ReportResult:
         if isinstance(summary, MergedSummary):
-            project.save_report(merged_as_json(summary), merged_as_html(summary))
+            project.save_report(merged_as_json(summary, heading), merged_as_html(summary, heading))
             return _merged_in_short(summary)
-        project.save_report(as_json(summary), as_html(summary))
+        project.save_report(as_json(summary, heading), as_html(summary, heading))
         return _in_short(summary)
 
     def prepare() -> ScanSummary | MergedSummary:

@@ -3,7 +3,7 @@
 import { order, refresh, studio } from "./ask.js";
 import { button, make, note } from "./dom.js";
 
-// fields: { key, label, kind: number | text | select | switch, value, options, unit, hint, more }
+// fields: { key, label, kind: number | text | select | switch, value, options, unit, hint, more, pick }
 export function commandForm({ page, command, fields, run = "Begin", values: fixed = {}, onchange = () => {} }) {
   const nameOf = () => (typeof command === "function" ? command(read()) : command);
   const inputs = new Map(fields.map((field) => [field.key, input(field)]));
@@ -11,6 +11,7 @@ export function commandForm({ page, command, fields, run = "Begin", values: fixe
   const fault = note("", "warning");
   fault.hidden = true;
   const start = button(run, begin, { className: "main" });
+  const row = (field, element) => rowOf(field, element, write);
   const plain = fields.filter((field) => !field.more).map((field) => row(field, inputs.get(field.key)));
   const more = fields.filter((field) => field.more).map((field) => row(field, inputs.get(field.key)));
   const element = make("form", { className: "form", onsubmit: (event) => { event.preventDefault(); begin(); } },
@@ -94,11 +95,41 @@ export function fill(select, options, value) {
   return select;
 }
 
-function row({ label, unit, hint, list }, element) {
+function rowOf({ label, unit, hint, list, pick }, element, write) {
   return make("label", { className: element.type === "checkbox" ? "check" : "" },
-    make("span", { textContent: unit ? `${label} [${unit}]` : label }), element,
+    make("span", { textContent: unit ? `${label} [${unit}]` : label }),
+    pick ? make("span", { className: "picked" }, element, picker(element, write)) : element,
     list ? suggestions(element) : null,
     hint ? make("small", { textContent: hint }) : null);
+}
+
+// A button that has the next place which is clicked in the model written into its field.
+let picking = null;
+function picker(element, write) {
+  const toggle = button("Pick", () => {
+    const isOn = picking?.toggle === toggle;
+    stopPicking();
+    if (isOn) return;
+    picking = { element, toggle, write };
+    toggle.setAttribute("aria-pressed", true);
+    toggle.textContent = "Click in the model";
+  }, { title: "Take the next place that is clicked in the model" });
+  return toggle;
+}
+
+function stopPicking() {
+  picking?.toggle.setAttribute("aria-pressed", false);
+  if (picking) picking.toggle.textContent = "Pick";
+  picking = null;
+}
+
+// Writes a place into the field that waits for one; says whether one did.
+export function givePlace(text) {
+  if (!picking?.element.isConnected) return false;
+  picking.element.value = text;
+  picking.write();
+  stopPicking();
+  return true;
 }
 
 // Names that are offered while one is typed; others may be typed, too.

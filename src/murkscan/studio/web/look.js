@@ -1,10 +1,12 @@
 // A scan: its model, its measures with their intervals, its report, its files; and a new scan.
 
-import { addressOf, ask, listen, order, question, refresh } from "./ask.js";
+import { addressOf, ask, listen, order, question, refresh, studio } from "./ask.js";
 import { button, keep, make, note, table } from "./dom.js";
-import { commandForm, fill, uploader } from "./form.js";
+import { commandForm, fill, givePlace, uploader } from "./form.js";
 import { measureForms } from "./measures.js";
 import { motionFields, motionOf, showMotion } from "./motion.js";
+
+const PLACE = /^-?\d+(\.\d+)?(,-?\d+(\.\d+)?){2}$/;
 
 export function lookPage(page, [named]) {
   const chosen = make("select", { "aria-label": "Scan" });
@@ -28,14 +30,16 @@ export function lookPage(page, [named]) {
       keep(model, [name, scan.page, scan.picture], () => modelOf(scan));
       keep(measured, [scan.measures, scan.unstated], () => measuresOf(scan));
       keep(forms, name, () => [make("h2", { textContent: "Measure" }), measureForms(name)]);
-      keep(stages, [scan.stages, scan.files, scan.report], () => stagesOf(scan));
+      keep(stages, [scan.stages, scan.files, scan.report, scan.accepted], () => stagesOf(scan));
     } catch (error) {
       keep(model, error.message, () => note(error.message, "warning"));
     }
   }
 
   function heard({ data, source }) {
-    if (typeof data?.murkscan !== "string" || source !== model.querySelector("iframe")?.contentWindow) return;
+    if (source !== model.querySelector("iframe")?.contentWindow) return;
+    if (PLACE.test(data?.place)) givePlace(data.place);
+    if (typeof data?.murkscan !== "string") return;
     const words = data.murkscan.match(/^murkscan measure \S+ distance --from-m (\S+) --to-m (\S+)$/);
     const cut = data.murkscan.match(/^murkscan measure \S+ section --point-m (\S+) --normal (\S+)$/);
     if (words) measure("distance", { "from-m": words[1], "to-m": words[2] });
@@ -75,7 +79,7 @@ function modelOf(scan) {
   return [frame, make("div", { className: "row" },
     make("a", { className: "button", href: addressOf(scan.page), target: "_blank", textContent: "Model on its own" }),
     scan.report ? make("a", { className: "button", href: addressOf(scan.report), target: "_blank", textContent: "Report" }) : null,
-    make("small", { textContent: "Measure two places, or cut, in the model: “Take this measure” there puts it below." }))];
+    make("small", { textContent: "Measure two places, or cut, in the model: “Take this measure” there puts it below. Or fit a ball, a pipe, a plane or a step: “Pick” below, then click the place." }))];
 }
 
 const UNITS = { m: ["mm", 1e3], m2: ["cm²", 1e4], m3: ["cm³", 1e6], rad: ["°", 180 / Math.PI] };
@@ -104,7 +108,17 @@ function rowOf(key, value, half, isUnknown) {
 const linkOf = (name) => make("a", { href: addressOf(name), target: "_blank", textContent: name.split("/").at(-1) });
 const size = (bytes) => (bytes > 1e6 ? `${(bytes / 1e6).toFixed(1)} MB` : `${Math.ceil(bytes / 1e3)} kB`);
 
-function stagesOf({ name, stages, files, report }) {
+function stagesOf({ name, stages, files, report, accepted }) {
+  const accept = commandForm({
+    page: "look", command: "accept", run: "Test", values: { out: name },
+    fields: [{ key: "test", label: "File of the artefacts and limits", list: [], placeholder: "acceptance.toml" }],
+  });
+  const lay = commandForm({
+    page: "look", command: "georeference", run: "Lay on control points", values: { out: name },
+    fields: [{ key: "control", label: "Table of control points", list: [], placeholder: "control.csv" }, { key: "crs", label: "Coordinate system", placeholder: "EPSG:25832" }],
+  });
+  accept.suggest("test", studio.state?.found.tests ?? []);
+  lay.suggest("control", studio.state?.found.logs ?? []);
   const export_ = commandForm({
     page: "look", command: "cloud", run: "Export the cloud", values: { out: name },
     fields: [{ key: "export", label: "File: .laz, .copc.laz, .las, .e57, .ply, .xyz", value: `${name.split("/").at(-1)}.laz` }],
@@ -115,7 +129,8 @@ function stagesOf({ name, stages, files, report }) {
   });
   const wrote = commandForm({
     page: "look", command: "report", run: "Write the report anew", values: { out: name },
-    fields: [{ key: "spacing-mm", label: "Wanted spacing", unit: "mm", kind: "number" }],
+    fields: [{ key: "title", label: "Title" }, { key: "client", label: "Client" }, { key: "place", label: "Place", placeholder: "ship, pier, date" },
+      { key: "spacing-mm", label: "Wanted spacing", unit: "mm", kind: "number", more: true }],
   });
   return make("div", { className: "cards" },
     make("section", { className: "card" }, make("h2", { textContent: "What was made" }),
@@ -124,6 +139,11 @@ function stagesOf({ name, stages, files, report }) {
           : make("span", { className: one.made ? "" : "missing" }, one.made || "not yet", one.quality.map((text) => make("small", { className: "block", textContent: ` ${text}.` })))))),
       report ? make("div", { className: "row" }, make("a", { className: "button", href: addressOf(report), target: "_blank", textContent: "Open the report" })) : null),
     make("section", { className: "card" }, make("h2", { textContent: "Report, page and exports" }), wrote, view, export_),
+    make("section", { className: "card" }, make("h2", { textContent: "Acceptance" }),
+      note("Hold a scan of calibrated balls, bars, plates or steps against limits; makes a page to sign."), accept,
+      accepted ? make("div", { className: "row" }, make("a", { className: "button", href: addressOf(accepted), target: "_blank", textContent: "Open the page to sign" })) : null,
+      make("h2", { textContent: "Place on the Earth" }),
+      note("Lay the scan on control points; what is exported afterwards lies in their coordinate system."), lay),
     make("section", { className: "card" }, make("h2", { textContent: "Files" }),
       make("ul", { className: "files" }, files.map(([path, bytes]) => make("li", {},
         make("a", { href: addressOf(path), target: "_blank", textContent: path.slice(name.length + 1) }), ` ${size(bytes)}`)))));

@@ -5,7 +5,7 @@ import { make } from "./dom.js";
 import { commandForm } from "./form.js";
 
 const PART = [
-  { key: "near-m", label: "Around X,Y,Z", unit: "m", placeholder: "all of it" },
+  { key: "near-m", pick: true, label: "Around X,Y,Z", unit: "m", placeholder: "all of it" },
   { key: "within-mm", label: "as far as", unit: "mm", kind: "number" },
 ];
 const DRAWING = [
@@ -17,18 +17,18 @@ const KINDS = {
   cylinder: ["Pipe", PART],
   plane: ["Plane", PART],
   step: ["Step", [
-    { key: "first-m", label: "Middle of the first plane, X,Y,Z", unit: "m" },
-    { key: "second-m", label: "of the second", unit: "m" },
+    { key: "first-m", pick: true, label: "Middle of the first plane, X,Y,Z", unit: "m" },
+    { key: "second-m", pick: true, label: "of the second", unit: "m" },
     { key: "within-mm", label: "as far as", unit: "mm", kind: "number", value: 20 }]],
   area: ["Area", PART],
   volume: ["Volume", [...PART,
-    { key: "point-m", label: "Above the plane through X,Y,Z", unit: "m" },
+    { key: "point-m", pick: true, label: "Above the plane through X,Y,Z", unit: "m" },
     { key: "normal", label: "with the normal", placeholder: "0,0,-1" }]],
   distance: ["Distance", [
-    { key: "from-m", label: "From X,Y,Z", unit: "m" },
-    { key: "to-m", label: "to X,Y,Z", unit: "m" }]],
+    { key: "from-m", pick: true, label: "From X,Y,Z", unit: "m" },
+    { key: "to-m", pick: true, label: "to X,Y,Z", unit: "m" }]],
   section: ["Section", [
-    { key: "point-m", label: "Through X,Y,Z", unit: "m" },
+    { key: "point-m", pick: true, label: "Through X,Y,Z", unit: "m" },
     { key: "normal", label: "across the direction", value: "0,1,0" }]],
   dents: ["Dents", [...DRAWING.map((field) => ({ ...field, more: true })),
     { key: "smallest-mm", label: "Smallest", unit: "mm", kind: "number", value: 20 },

@@ -19,6 +19,11 @@ const quoted = (text) => (/^[\w./:@+-]+$/.test(text) ? text : `'${text.replaceAl
 // A page that shows this one, such as the studio's, may take the measure itself: it is told the command.
 const isShownWithin = window.parent !== window;
 
+// Such a page may also want the place that was clicked, in metres.
+export function tellPlace(place) {
+  if (isShownWithin) window.parent.postMessage({ place: numbersOf(place) }, "*");
+}
+
 export function copyButton(text) {
   if (isShownWithin && text.startsWith("murkscan measure ")) {
     return make("button", {

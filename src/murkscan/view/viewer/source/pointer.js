@@ -1,5 +1,6 @@
 // Clicks and taps on the model: to measure, to read a point, to turn about it.
 
+import { tellPlace } from "./command.js";
 import { NO_VALUE, pointOf, worldPlace } from "./model.js";
 import { place, valueText } from "./numbers.js";
 import { pick } from "./pick.js";
@@ -50,7 +51,10 @@ function click(app, found) {
     if (found === null || picks.some((one) => one.scan === scan && one.point === found)) return undefined;
     return app.update({ picks: [...picks, { scan, point: found, cells: {} }] });
   }
-  if (!measuring) return app.update({ read: found });
+  if (!measuring) {
+    if (found !== null) tellPlace(worldPlace(app.model, pointOf(app.model, found)));
+    return app.update({ read: found });
+  }
   if (found === null || found === first) return undefined;
   if (first === null) return app.update({ first: found });
   return app.measure(first, found);
