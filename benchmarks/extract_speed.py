@@ -41,13 +41,13 @@ def run(recording: Path, out: Path, extractor: str) -> tuple[float, float]:
     since, peak = time.perf_counter(), 0.0
     with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
         while process.poll() is None:
-            peak = max(peak, _resident(process.pid))
+            peak = max(peak, resident(process.pid))
             time.sleep(0.05)
     assert process.returncode == 0
     return time.perf_counter() - since, peak
 
 
-def _resident(pid: int) -> float:
+def resident(pid: int) -> float:
     """Give the most that a process has held so far [MB]; nothing where it is gone."""
     try:
         lines = Path(f"/proc/{pid}/status").read_text().splitlines()

@@ -47,15 +47,15 @@ def encode(path: Path) -> None:
         container.mux(stream.encode())
 
 
-def repeat(loop: Path, path: Path) -> None:
+def repeat(loop: Path, path: Path, *, frames: int = LOOP, turns: int = LOOPS) -> None:
     """Copy the packets again and again, with times that go on."""
     with av.open(str(path), "w") as container:
         stream = None
-        for turn in range(LOOPS):
+        for turn in range(turns):
             with av.open(str(loop)) as source:
                 video = source.streams.video[0]
                 stream = stream or container.add_stream_from_template(video)
-                shift = round(turn * LOOP / RATE / video.time_base)
+                shift = round(turn * frames / RATE / video.time_base)
                 for packet in source.demux(video):
                     if packet.size:
                         packet.pts, packet.dts = packet.pts + shift, packet.dts + shift
