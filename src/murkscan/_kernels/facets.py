@@ -5,6 +5,12 @@ import numpy as np
 
 MOMENTS = 11
 """What a cell sums: count, x, y, z, xx, xy, xz, yy, yz, zz, brightness."""
+_SUMS = 14
+"""What a plane's fit sums: count, u, v, h, uu, uv, vv, uh, vh, hh, brightness, it times u, v, h."""
+_FEWEST = 6
+"""Points of a plane."""
+_ALL_SIDES = 1 << 1 | 1 << 7 | 1 << 3 | 1 << 5
+"""Cells beside the middle one at (−1, 0), (1, 0), (0, −1) and (0, 1)."""
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
@@ -84,98 +90,95 @@ def fit_facets(
             for k in range(3):
                 middle[c, k] = sums[c, 1 + k] / sums[c, 0]
             middle[c, 3] = sums[c, 10] / sums[c, 0]
+    shape, total = (num_rows, num_columns), np.empty(_SUMS)
     for i in range(num_rows):
-        a = axes[i]
         for j in range(num_columns):
-            _fit_one(sums, middle, found, i, j, num_rows, num_columns, a, reach, jump)
+            c = i * num_columns + j
+            if sums[c, 0] > 0 and _add_around(sums, middle, i, j, shape, axes[i], reach, jump, total):
+                _solve(total, axes[i], found[c])
     return found, middle
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def _fit_one(
+def _add_around(
     sums: np.ndarray,
     middle: np.ndarray,
-    found: np.ndarray,
     i: int,
     j: int,
-    num_rows: int,
-    num_columns: int,
-    a: np.ndarray,
+    shape: tuple[int, int],
+    axes: np.ndarray,
     reach: int,
     jump: float,
-) -> None:
-    c = i * num_columns + j
-    if sums[c, 0] == 0:
-        return
-    m = middle[c]
-    n = su = sv = sh = suu = suv = svv = suh = svh = shh = 0.0
-    b = bu = bv = 0.0
-    sides = 0
-    for di in range(-reach, reach + 1):
-        for dj in range(-reach, reach + 1):
-            if not (0 <= i + di < num_rows and 0 <= j + dj < num_columns):
-                continue
+    total: np.ndarray,
+) -> bool:
+    """Add up the cells around one that belong to its surface; tell whether they hold a plane.
+
+    They do where some lie beside it on both sides, along both directions.
+    """
+    total[:] = 0.0
+    num_rows, num_columns = shape
+    m, sides = middle[i * num_columns + j], 0
+    for di in range(max(-reach, -i), min(reach, num_rows - 1 - i) + 1):
+        for dj in range(max(-reach, -j), min(reach, num_columns - 1 - j) + 1):
             d = (i + di) * num_columns + j + dj
-            s = sums[d]
-            if s[0] == 0:
+            if sums[d, 0] == 0:
                 continue
             ex, ey, ez = middle[d, 0] - m[0], middle[d, 1] - m[1], middle[d, 2] - m[2]
             far = jump * max(abs(di), abs(dj))
-            if ex * ex + ey * ey + ez * ez > far * far:
-                continue
-            sides |= 1 << (3 * (np.sign(di) + 1) + np.sign(dj) + 1)
-            # Second moments of this cell about the middle of the first.
-            k = s[0]
-            qx, qy, qz = s[1] / k - m[0], s[2] / k - m[1], s[3] / k - m[2]
-            xx = s[4] - s[1] * s[1] / k + k * qx * qx
-            xy = s[5] - s[1] * s[2] / k + k * qx * qy
-            xz = s[6] - s[1] * s[3] / k + k * qx * qz
-            yy = s[7] - s[2] * s[2] / k + k * qy * qy
-            yz = s[8] - s[2] * s[3] / k + k * qy * qz
-            zz = s[9] - s[3] * s[3] / k + k * qz * qz
-            u = a[0, 0] * qx + a[0, 1] * qy + a[0, 2] * qz
-            v = a[1, 0] * qx + a[1, 1] * qy + a[1, 2] * qz
-            h = a[2, 0] * qx + a[2, 1] * qy + a[2, 2] * qz
-            n += k
-            su += k * u
-            sv += k * v
-            sh += k * h
-            suu += _form(a[0], a[0], xx, xy, xz, yy, yz, zz)
-            suv += _form(a[0], a[1], xx, xy, xz, yy, yz, zz)
-            svv += _form(a[1], a[1], xx, xy, xz, yy, yz, zz)
-            suh += _form(a[0], a[2], xx, xy, xz, yy, yz, zz)
-            svh += _form(a[1], a[2], xx, xy, xz, yy, yz, zz)
-            shh += _form(a[2], a[2], xx, xy, xz, yy, yz, zz)
-            bright = middle[d, 3] - m[3]
-            b += k * bright
-            bu += k * bright * u
-            bv += k * bright * v
-    # Neighbours on both sides, along both directions: bits of (−1, 0), (1, 0), (0, −1), (0, 1).
-    if n < 6 or (sides & 2) == 0 or (sides & 128) == 0 or (sides & 8) == 0 or (sides & 32) == 0:
-        return
-    suu -= su * su / n
-    suv -= su * sv / n
-    svv -= sv * sv / n
-    suh -= su * sh / n
-    svh -= sv * sh / n
-    shh -= sh * sh / n
-    bu -= b * su / n
-    bv -= b * sv / n
+            if ex * ex + ey * ey + ez * ez <= far * far:
+                sides |= 1 << (3 * (np.sign(di) + 1) + np.sign(dj) + 1)
+                _add_cell(sums[d], m, middle[d, 3] - m[3], axes, total)
+    return total[0] >= _FEWEST and (sides & _ALL_SIDES) == _ALL_SIDES
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy")
+def _add_cell(
+    s: np.ndarray, m: np.ndarray, bright: float, axes: np.ndarray, total: np.ndarray
+) -> None:
+    """Add a cell's moments about a place, along the axes u, v and h, and its brightness."""
+    k = s[0]
+    qx, qy, qz = s[1] / k - m[0], s[2] / k - m[1], s[3] / k - m[2]
+    xx = s[4] - s[1] * s[1] / k + k * qx * qx
+    xy = s[5] - s[1] * s[2] / k + k * qx * qy
+    xz = s[6] - s[1] * s[3] / k + k * qx * qz
+    yy = s[7] - s[2] * s[2] / k + k * qy * qy
+    yz = s[8] - s[2] * s[3] / k + k * qy * qz
+    zz = s[9] - s[3] * s[3] / k + k * qz * qz
+    total[0] += k
+    for one in range(3):
+        at = axes[one, 0] * qx + axes[one, 1] * qy + axes[one, 2] * qz
+        total[1 + one] += k * at
+        total[11 + one] += k * bright * at
+    total[4] += _form(axes[0], axes[0], xx, xy, xz, yy, yz, zz)
+    total[5] += _form(axes[0], axes[1], xx, xy, xz, yy, yz, zz)
+    total[6] += _form(axes[1], axes[1], xx, xy, xz, yy, yz, zz)
+    total[7] += _form(axes[0], axes[2], xx, xy, xz, yy, yz, zz)
+    total[8] += _form(axes[1], axes[2], xx, xy, xz, yy, yz, zz)
+    total[9] += _form(axes[2], axes[2], xx, xy, xz, yy, yz, zz)
+    total[10] += k * bright
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy")
+def _solve(total: np.ndarray, axes: np.ndarray, found: np.ndarray) -> None:
+    """Fit height and brightness over u and v; leave NaN where the points lie on one line."""
+    n, su, sv, sh, b = total[0], total[1], total[2], total[3], total[10]
+    suu, suv, svv = total[4] - su * su / n, total[5] - su * sv / n, total[6] - sv * sv / n
+    suh, svh, shh = total[7] - su * sh / n, total[8] - sv * sh / n, total[9] - sh * sh / n
+    bu, bv = total[11] - b * su / n, total[12] - b * sv / n
     det = suu * svv - suv * suv
     if not det > 1e-6 * (suu + svv) ** 2:
         return
     gu = (svv * suh - suv * svh) / det
     gv = (suu * svh - suv * suh) / det
     size = np.sqrt(1.0 + gu * gu + gv * gv)
-    f = found[c]
     for k in range(3):
-        f[k] = (a[2, k] - gu * a[0, k] - gv * a[1, k]) / size
-    f[3] = svv / det
-    f[4] = suu / det
-    f[5] = max(shh - gu * suh - gv * svh, 0.0) / max(n - 3.0, 1.0) / (size * size)
-    f[6] = n
-    f[7] = (svv * bu - suv * bv) / det
-    f[8] = (suu * bv - suv * bu) / det
+        found[k] = (axes[2, k] - gu * axes[0, k] - gv * axes[1, k]) / size
+    found[3] = svv / det
+    found[4] = suu / det
+    found[5] = max(shh - gu * suh - gv * svh, 0.0) / max(n - 3.0, 1.0) / (size * size)
+    found[6] = n
+    found[7] = (svv * bu - suv * bv) / det
+    found[8] = (suu * bv - suv * bu) / det
 
 
 @numba.njit(cache=True, nogil=True, inline="always")
