@@ -6,7 +6,7 @@ from pathlib import Path
 
 from harness import Figure, tell
 
-from murkscan.survey.demo import FALSE, Compared, run_demo
+from murkscan.survey.demo import FALSE, Judged, run_demo
 
 
 def main() -> None:
@@ -33,7 +33,7 @@ def main() -> None:
     )
 
 
-def false(scan: Compared) -> float:
+def false(scan: Judged) -> float:
     return 100 * scan.errors.false / max(scan.errors.count, 1)
 
 

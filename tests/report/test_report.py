@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from murkscan.report import (
+    Quantiles,
     Recorded,
     Shown,
-    Spread,
     as_html,
     as_json,
     frame_statistics,
@@ -118,9 +118,9 @@ def _text(page):
 
 
 def test_spread_is_that_of_the_numbers_and_passes_over_what_is_none():
-    spread = Spread.from_values(np.array([*np.arange(101.0), math.nan, math.inf]))
-    assert spread == Spread(0.0, 5.0, 50.0, 95.0, 100.0)
-    assert Spread.from_values(np.zeros(0)) == Spread(None, None, None, None, None)
+    spread = Quantiles.from_values(np.array([*np.arange(101.0), math.nan, math.inf]))
+    assert spread == Quantiles(0.0, 5.0, 50.0, 95.0, 100.0)
+    assert Quantiles.from_values(np.zeros(0)) == Quantiles(None, None, None, None, None)
 
 
 def test_spacing_is_that_of_neighbours_only():

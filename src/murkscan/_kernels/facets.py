@@ -93,9 +93,9 @@ def fit_facets(
     shape, total = (num_rows, num_columns), np.empty(_SUMS)
     for i in range(num_rows):
         for j in range(num_columns):
-            c = i * num_columns + j
-            if sums[c, 0] > 0 and _add_around(sums, middle, i, j, shape, axes[i], reach, jump, total):
-                _solve(total, axes[i], found[c])
+            c, a = i * num_columns + j, axes[i]
+            if sums[c, 0] > 0 and _add_around(sums, middle, i, j, shape, a, reach, jump, total):
+                _solve(total, a, found[c])
     return found, middle
 
 

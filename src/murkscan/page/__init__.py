@@ -3,10 +3,10 @@
 from .content import Block as Block
 from .content import Cell as Cell
 from .content import Code as Code
+from .content import EmbeddedPage as EmbeddedPage
 from .content import Facts as Facts
 from .content import Figure as Figure
 from .content import Gallery as Gallery
-from .content import Model as Model
 from .content import Note as Note
 from .content import Picture as Picture
 from .content import Section as Section

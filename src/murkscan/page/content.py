@@ -79,10 +79,10 @@ class Gallery:
 
 @final
 @dataclass(frozen=True)
-class Model:
-    """A model to turn, on a page of its own that is shown within this one."""
+class EmbeddedPage:
+    """Another page, such as that of a model to turn, shown within this one."""
 
-    kind: ClassVar[str] = "model"
+    kind: ClassVar[str] = "embedded"
     path: str
     """Of the page, relative to this one, with forward slashes."""
     caption: str
@@ -107,7 +107,7 @@ class Signatures:
     """What stands below each line."""
 
 
-Block = Note | Facts | Table | Figure | Gallery | Model | Code | Signatures
+Block = Note | Facts | Table | Figure | Gallery | EmbeddedPage | Code | Signatures
 
 
 @final

@@ -23,15 +23,15 @@ from .merged import merged_as_json as merged_as_json
 from .placed import ControlRow as ControlRow
 from .placed import Placed as Placed
 from .plain import as_json as as_json
+from .quantiles import Quantiles as Quantiles
 from .reach import Reach as Reach
-from .recorded import Model as Model
+from .recorded import ModelSize as ModelSize
 from .recorded import Recorded as Recorded
 from .recorded import Shown as Shown
 from .spacing import spacing_across as spacing_across
 from .spacing import spacing_along as spacing_along
 from .speed import Speed as Speed
 from .speed import judge_speed as judge_speed
-from .spread import Spread as Spread
 from .summary import ScanSummary as ScanSummary
 from .summary import summarise as summarise
 from .summary import with_coverage as with_coverage

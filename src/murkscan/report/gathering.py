@@ -12,7 +12,7 @@ from ..types.profile import Profile
 from ..types.trajectory import Trajectory
 from .belief import LEVELS, Belief
 from .even_sample import EvenSample
-from .recorded import Model
+from .recorded import ModelSize
 from .spacing import spacing_across, spacing_along
 from .timeline import FrameStatistics, frame_statistics
 from .trust import Trust, judge_trust
@@ -65,7 +65,7 @@ def measure_cloud(
     mesh_size: tuple[int, int],
     *,
     is_stated: bool,
-) -> tuple[Model, Trust | None]:
+) -> tuple[ModelSize, Trust | None]:
     """Tell how large a cloud is and how far to trust its points; None without points.
 
     Args:
@@ -85,8 +85,8 @@ def measure_cloud(
         sigma.add(block.sigma)
         common.add(block.sigma_common)
     if not num_points:
-        return Model(0, num_outliers, *mesh_size, None), None
+        return ModelSize(0, num_outliers, *mesh_size, None), None
     low, high = np.min([end[0] for end in ends], axis=0), np.max([end[1] for end in ends], axis=0)
     x, y, z = (high - low).tolist()
-    model = Model(num_points, num_outliers, *mesh_size, (x, y, z))
+    model = ModelSize(num_points, num_outliers, *mesh_size, (x, y, z))
     return model, judge_trust(sigma.values(), common.values(), is_stated=is_stated)

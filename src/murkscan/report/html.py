@@ -7,7 +7,8 @@ from .charts import depth_chart, points_chart, signal_chart
 from .distribution_charts import sigma_distribution, signal_distribution
 from .heading import NO_HEADING, Heading
 from .placed import placed_sections
-from .recorded import Model, Shown
+from .quantiles import Quantiles
+from .recorded import ModelSize, Shown
 from .sections import (
     belief_rows,
     calibration_blocks,
@@ -16,7 +17,6 @@ from .sections import (
     scanned_rows,
     speed_blocks,
 )
-from .spread import Spread
 from .summary import ScanSummary
 from .trust import AT_95, Trust
 from .walls import wall_sections
@@ -125,7 +125,7 @@ def _headline(summary: ScanSummary) -> list[Block]:
     return [*_verdict(summary), *odd, Facts(facts)]
 
 
-def size_facts(model: Model) -> list[tuple[str, str]]:
+def size_facts(model: ModelSize) -> list[tuple[str, str]]:
     """Say how large a cloud is, where it has points, and from where its files count."""
     if model.size is None:
         return []
@@ -225,17 +225,17 @@ def _tell_motion(motion: str) -> str:
     )
 
 
-def _at(part: Spread | None, share: str) -> float | None:
+def _at(part: Quantiles | None, share: str) -> float | None:
     value = None if part is None else getattr(part, share)
     return None if value is None else 1e3 * value
 
 
-def _at_95(part: Spread | None) -> list[float | None]:
+def _at_95(part: Quantiles | None) -> list[float | None]:
     values = [_at(part, share) for share in ("median", "high")]
     return [None if value is None else AT_95 * value for value in values]
 
 
-def _figures(spread: Spread, scale: float) -> list[float | None]:
+def _figures(spread: Quantiles, scale: float) -> list[float | None]:
     values = (spread.smallest, spread.low, spread.median, spread.high, spread.largest)
     return [None if value is None else scale * value for value in values]
 

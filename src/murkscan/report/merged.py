@@ -12,7 +12,7 @@ from .html import gallery, size_facts, uncertainty_blocks
 from .placed import placed_as_plain, placed_sections
 from .plain import as_uncertainty
 from .plain_numbers import round_off
-from .recorded import Model, Shown
+from .recorded import ModelSize, Shown
 from .sections import calibration_blocks, repeat_blocks
 from .trust import AT_95, Trust
 from .walls import wall_sections, walls_as_plain
@@ -96,7 +96,7 @@ class MergedSummary:
     passes: Sequence[ReportedPass]
     pairs: Sequence[ReportedPair]
     rigs: Sequence[ReportedRig]
-    model: Model
+    model: ModelSize
     trust: Trust | None
     """How far to trust the points; None without any."""
     settings: Mapping[str, Any]

@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 
-from .spread import Spread
+from .quantiles import Quantiles
 
 
-def as_plain(spread: Spread, scale: float) -> dict[str, float | None]:
+def as_plain(spread: Quantiles, scale: float) -> dict[str, float | None]:
     """Give the five figures of a spread in another unit: `scale` of it are one."""
     return {
         name: None if value is None else round_off(scale * value)

@@ -74,7 +74,7 @@ class Shown:
 
 
 @dataclass(frozen=True)
-class Model:
+class ModelSize:
     """What became of the points."""
 
     points: int

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..types.frame_times import FrameTimes
 from ..types.trajectory import Trajectory
-from .spread import Spread
+from .quantiles import Quantiles
 
 
 @dataclass(frozen=True)
@@ -15,9 +15,9 @@ class Speed:
 
     rate: float | None
     """Frames a second, fields counted; None where the recording has no times."""
-    step: Spread
+    step: Quantiles
     """Way from frame to frame [m]."""
-    shown: Spread
+    shown: Quantiles
     """Speed from frame to frame [m/s]; of no numbers where the recording has no times."""
     wanted: float | None
     """Wanted distance from one profile to the next [m]; None without any."""
@@ -55,7 +55,7 @@ def judge_speed(
     nothing = np.zeros(0)
     return Speed(
         rate=float(np.median(counts / times)) or None if is_timed else None,
-        step=Spread.from_values(ways / counts),
-        shown=Spread.from_values(ways / times if is_timed else nothing),
+        step=Quantiles.from_values(ways / counts),
+        shown=Quantiles.from_values(ways / times if is_timed else nothing),
         wanted=wanted,
     )

@@ -17,10 +17,10 @@ from .coverage import Coverage, map_coverage
 from .directions import SurfaceDirections
 from .gathering import gather, measure_cloud
 from .histogram import Histogram
+from .quantiles import Quantiles
 from .reach import Reach
-from .recorded import Model, Recorded, Shown
+from .recorded import ModelSize, Recorded, Shown
 from .speed import Speed, judge_speed
-from .spread import Spread
 from .swath_layout import SwathLayout
 from .timeline import Timeline, make_timeline
 from .trust import Trust
@@ -44,17 +44,17 @@ class ScanSummary:
     timeline: Timeline
     num_points: int
     """Points on all profiles."""
-    signal: Spread
+    signal: Quantiles
     """Height of the stripe above its surroundings [grey levels]."""
-    depth: Spread
+    depth: Quantiles
     """z of the points in the camera frame [m]."""
-    sigma: Spread
+    sigma: Quantiles
     """Standard deviation of the points along their rays [m]."""
-    along: Spread
+    along: Quantiles
     """Distance of neighbouring points on a stripe: along a profile [m]."""
-    across: Spread
+    across: Quantiles
     """Distance of the same scan line's points on successive stripes: along the motion [m]."""
-    model: Model
+    model: ModelSize
     trust: Trust | None
     """How far to trust the cloud's points; None without a cloud."""
     duration: float
@@ -127,7 +127,7 @@ def summarise(
     gathered = gather(profiles, {n: rig.lasers[n].axis for n in lasers}, trajectory)
     values = dict(gathered.values)
     reach = Reach.from_points(values.pop("range"), values["signal"], noise=noise)
-    spreads = {name: Spread.from_values(numbers) for name, numbers in values.items()}
+    spreads = {name: Quantiles.from_values(numbers) for name, numbers in values.items()}
     model, trust = measure_cloud(
         cloud,
         num_outliers,

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..types.arrays import Scalars
-from .spread import Spread
+from .quantiles import Quantiles
 
 AT_95 = 1.96
 """Standard deviations within which a Gaussian error stays in 95 % of the cases."""
@@ -15,12 +15,12 @@ AT_95 = 1.96
 class Trust:
     """Standard deviations of a cloud's points, spread over the points [m]."""
 
-    independent: Spread
+    independent: Quantiles
     """What differs from point to point, along the ray: an average of many has less of it."""
-    common: Spread | None
+    common: Quantiles | None
     """What all points share, since one rig on one trajectory saw them: no average helps. None where
     nothing is stated of either."""
-    total: Spread
+    total: Quantiles
     """Both together."""
 
 
@@ -33,5 +33,5 @@ def judge_trust(sigma: Scalars, common: Scalars, *, is_stated: bool) -> Trust:
         is_stated: Whether anything is known of that part: of a rig without a covariance nothing is.
     """
     total = np.hypot(sigma, common)
-    stated = Spread.from_values(common) if is_stated else None
-    return Trust(Spread.from_values(sigma), stated, Spread.from_values(total))
+    stated = Quantiles.from_values(common) if is_stated else None
+    return Trust(Quantiles.from_values(sigma), stated, Quantiles.from_values(total))

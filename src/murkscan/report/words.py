@@ -8,7 +8,7 @@ from ..optics import equivalent_plane, refractive_index
 from ..types.laser import Laser
 from ..types.port import FlatPort, Port
 from ..types.rig import Rig
-from .spread import Spread
+from .quantiles import Quantiles
 
 _CHOICE = ("choice", "type")
 """Keys under which a Choice has its name."""
@@ -55,7 +55,7 @@ def setting_rows(settings: Mapping[str, Any], parent: str = "") -> Iterator[tupl
             yield full, _describe_value(value)
 
 
-def describe_range(spread: Spread) -> str:
+def describe_range(spread: Quantiles) -> str:
     """Write the range of a length, from the smallest to the largest, in millimetres."""
     if spread.smallest is None or spread.largest is None:
         return "–"

@@ -15,7 +15,7 @@ from ..io.mesh_files import load_mesh
 from ..io.rig_toml import load_rig
 from ..io.text import save_text
 from ..motion import ConstantSpeed
-from ..page import Gallery, Model, Note, Picture, Section, Table, render_page
+from ..page import EmbeddedPage, Gallery, Note, Picture, Section, Table, render_page
 from ..project import Project, find_trajectory
 from ..simulate import as_standalone, parse_scene, read_scene
 from ..types.arrays import ColourImage, Scalars
@@ -65,7 +65,7 @@ class Errors:
 
 
 @dataclass(frozen=True)
-class Compared:
+class Judged:
     """A scan, and how far it is from the truth."""
 
     name: str
@@ -74,7 +74,7 @@ class Compared:
     errors: Errors
 
 
-def run_demo(out: Path, *, progress: Progress = silent) -> tuple[Compared, Compared]:
+def run_demo(out: Path, *, progress: Progress = silent) -> tuple[Judged, Judged]:
     """Simulate a hull's recording, scan it in two ways, and compare both with the true hull.
 
     All but the way to find the stripe is the same in both.
@@ -104,7 +104,7 @@ def run_demo(out: Path, *, progress: Progress = silent) -> tuple[Compared, Compa
 
 def _scan(
     out: Path, folder: str, extractor: AbstractExtractor, name: str, progress: Progress
-) -> Compared:
+) -> Judged:
     """Scan the recording in one way, and hold the cloud against the true hull."""
     rig_file = out / "recording" / "rig.toml"
     rig = load_rig(rig_file)
@@ -124,7 +124,7 @@ def _scan(
     compared = points[:: -(-len(points) // _COMPARED) or 1]
     truth = load_mesh(out / "recording" / "truth" / "mesh.ply")
     errors = Errors.from_distances(distance_to_mesh(compared, truth, within=FALSE))
-    return Compared(name, project, errors)
+    return Judged(name, project, errors)
 
 
 def _of(name: str, progress: Progress) -> Progress:
@@ -141,7 +141,7 @@ def _draw_hull(project: Project) -> ColourImage:
     return render(project.load_mesh(), view, colours=Depth((x, y, z), front.start), size=_SIZE)
 
 
-def _page(ours: Compared, paper: Compared) -> str:
+def _page(ours: Judged, paper: Judged) -> str:
     """Show both scans under one another, and the better one to be turned."""
     both = (paper, ours)
     hulls = [
@@ -151,7 +151,7 @@ def _page(ours: Compared, paper: Compared) -> str:
         for one in both
         for folder in [one.project.root.name]
     ]
-    model = Model(f"{ours.project.root.name}/view/index.html", f"{ours.name}: drag to turn")
+    model = EmbeddedPage(f"{ours.project.root.name}/view/index.html", f"{ours.name}: drag to turn")
     return render_page(
         "One recording, scanned in two ways",
         [
@@ -164,14 +164,14 @@ def _page(ours: Compared, paper: Compared) -> str:
     )
 
 
-def _row(one: Compared) -> tuple[str, int, Decimal, Decimal | None]:
+def _row(one: Judged) -> tuple[str, int, Decimal, Decimal | None]:
     """Put a scan's errors beside its name."""
     false = Decimal(f"{100 * one.errors.false / max(one.errors.count, 1):.1f}")
     rms = Decimal(f"{1e3 * one.errors.rms:.2f}") if np.isfinite(one.errors.rms) else None
     return one.name, len(one.project.load_cloud()), false, rms
 
 
-def _frames(both: Sequence[Compared]) -> list[Picture]:
+def _frames(both: Sequence[Judged]) -> list[Picture]:
     """Choose a frame from the middle that both have drawn."""
     overlays = [set(one.project.find_overlays()) for one in both]
     common = sorted(set.intersection(*overlays))

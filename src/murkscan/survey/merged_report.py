@@ -15,7 +15,7 @@ from ..project.merged import load_merged_errors, load_pass_rig, load_passes, rig
 from ..project.unstated import list_unstated
 from ..report import (
     MergedSummary,
-    Model,
+    ModelSize,
     ReportedPair,
     ReportedPass,
     ReportedRig,
@@ -134,7 +134,9 @@ def _compare_passes(
     return pairs
 
 
-def _trust(cloud: PointCloud, owner: Indices, model: Model, errors: MergedErrors) -> Trust | None:
+def _trust(
+    cloud: PointCloud, owner: Indices, model: ModelSize, errors: MergedErrors
+) -> Trust | None:
     """Tell how far to trust the points, by what their rigs and alignments share."""
     if not model.points:
         return None

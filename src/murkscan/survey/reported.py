@@ -15,7 +15,7 @@ from ..project import (
     MeasureResult,
     Project,
 )
-from ..report import ControlRow, DrawnWall, Model, Placed
+from ..report import ControlRow, DrawnWall, ModelSize, Placed
 from .measured import measurement_files
 
 _RECORD = ".stage.json"
@@ -29,7 +29,7 @@ def digest_beside(project: Project) -> dict[str, str]:
     return found if placed is None else {"georeference": placed.digest, **found}
 
 
-def tell_beside(project: Project, model: Model) -> Model:
+def tell_beside(project: Project, model: ModelSize) -> ModelSize:
     """Say where the model's files count from, where on the Earth it lies, and what of its walls.
 
     What is of an earlier cloud is left out.

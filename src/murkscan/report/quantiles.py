@@ -10,7 +10,7 @@ _LOW, _HIGH = 0.05, 0.95
 
 
 @dataclass(frozen=True)
-class Spread:
+class Quantiles:
     """Five figures for many numbers; each None where there are no numbers."""
 
     smallest: float | None
@@ -22,7 +22,7 @@ class Spread:
     largest: float | None
 
     @classmethod
-    def from_values(cls, values: Scalars | Ratios) -> "Spread":
+    def from_values(cls, values: Scalars | Ratios) -> "Quantiles":
         """Summarise numbers; those that are not finite do not count."""
         finite = np.sort(values[np.isfinite(values)])
         if not len(finite):
