@@ -52,6 +52,13 @@ class MissingResult(MurkscanError, FileNotFoundError):
 class MissingDependency(MurkscanError, ImportError):
     """An optional extra is not installed."""
 
+    @classmethod
+    def of(cls, what: str, package: str, extra: str) -> "MissingDependency":
+        """Say what needs a package, and the line that installs it."""
+        return cls(
+            f'{what} needs {package}: pip install "murkscan[{extra}]", or ".[{extra}]" in a clone.'
+        )
+
 
 class DeviceError(MurkscanError, OSError):
     """A camera, a disk or a worker failed."""

@@ -34,9 +34,7 @@ def studio(
     try:
         from ..studio import serve
     except ModuleNotFoundError as error:
-        raise MissingDependency(
-            f"The studio needs {error.name}; install it with: pip install 'murkscan[studio]'"
-        ) from error
+        raise MissingDependency.of("The studio", error.name or "more", "studio") from error
 
     def show(address: str) -> None:
         if not address.startswith("http"):

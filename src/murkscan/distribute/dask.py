@@ -4,6 +4,7 @@ from collections import deque
 from collections.abc import Callable, Generator, Iterable
 from contextlib import ExitStack
 from dataclasses import dataclass
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, final
 
 from ..errors import DeviceError, InputError, MissingDependency
@@ -34,7 +35,9 @@ class Dask(AbstractExecutor):
     shares_memory: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
-        """Refuse settings that mean nothing together."""
+        """Refuse settings that mean nothing together, and to begin without the library."""
+        if find_spec("distributed") is None:
+            raise MissingDependency.of("Dask", "distributed", "cluster")
         check_workers(self.workers)
         if self.address is not None and self.workers is not None:
             raise InputError(
@@ -94,7 +97,5 @@ def import_distributed() -> "ModuleType":
         import distributed
         import distributed.scheduler
     except ImportError as error:
-        raise MissingDependency(
-            'Dask needs distributed: pip install "murkscan[cluster]", or ".[cluster]" in a clone.'
-        ) from error
+        raise MissingDependency.of("Dask", "distributed", "cluster") from error
     return distributed

@@ -41,7 +41,7 @@ def find_grid(crs: str, place: Vector) -> Grid:
             the place lies far outside of it.
         MissingDependency: pyproj is not installed.
     """
-    pyproj = import_pyproj("Coordinate systems are known")
+    pyproj = import_pyproj("A coordinate system")
     system = find_system(pyproj, crs)
     heights = list(system.axis_info[2:])
     if any(axis.direction != "up" or axis.unit_name != "metre" for axis in heights):

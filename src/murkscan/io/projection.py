@@ -39,7 +39,7 @@ def project_places(latitude: Scalars, longitude: Scalars, crs: str | None) -> Pr
         InputError: There is no such coordinate system, or its unit is not the metre.
         MissingDependency: pyproj is not installed.
     """
-    pyproj = import_pyproj("Latitude and longitude become metres")
+    pyproj = import_pyproj("Making metres of latitude and longitude")
     system = find_system(pyproj, crs or _utm(float(latitude[0]), float(longitude[0])))
     to_grid = pyproj.Transformer.from_crs(_GLOBE, system, always_xy=True)
     east, north = to_grid.transform(longitude, latitude)
@@ -59,7 +59,7 @@ def import_pyproj(what: str) -> Any:
     """Import pyproj.
 
     Args:
-        what: What is done by it, for the error.
+        what: What is done by it, to begin the error with.
 
     Raises:
         MissingDependency: It is not installed.
@@ -67,9 +67,7 @@ def import_pyproj(what: str) -> Any:
     try:
         import pyproj
     except ImportError as error:
-        raise MissingDependency(
-            f"{what} by pyproj; install it with: pip install 'murkscan[dive]'"
-        ) from error
+        raise MissingDependency.of(what, "pyproj", "dive") from error
     return pyproj
 
 

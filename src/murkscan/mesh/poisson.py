@@ -137,10 +137,10 @@ def _import_open3d() -> "ModuleType":
     try:
         import open3d
     except (ImportError, OSError) as error:
+        if isinstance(error, ModuleNotFoundError):
+            raise MissingDependency.of("Poisson", "Open3D", "mesh") from error
         raise MissingDependency(
-            'Poisson needs Open3D: pip install "murkscan[mesh]", or ".[mesh]" in a clone.'
-            if isinstance(error, ModuleNotFoundError)
-            else f"open3d is installed but does not load ({error}); on Debian and Ubuntu it needs "
+            f"open3d is installed but does not load ({error}); on Debian and Ubuntu it needs "
             "apt-get install libusb-1.0-0."
         ) from error
     return open3d

@@ -48,9 +48,7 @@ class Message(NamedTuple):
 def require_extra(missing: ImportError, extra: str, what: str) -> MissingDependency:
     """Say what has to be installed for a kind of file."""
     package = (missing.name or "more").partition(".")[0]
-    return MissingDependency(
-        f"Reading {what} needs {package}; install it with: pip install 'murkscan[{extra}]'"
-    )
+    return MissingDependency.of(f"Reading {what}", package, extra)
 
 
 def look_up(value: Any, path: str) -> Any:
