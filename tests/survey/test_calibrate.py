@@ -9,6 +9,7 @@ from murkscan.calibrate import Chessboard, Margin, sheet_of
 from murkscan.calibrate.board.stripe import locate_on_board
 from murkscan.errors import Degenerate, FormatError, InputError, MissingResult, NotEnoughData
 from murkscan.io.images import write_image
+from murkscan.io.rig_records import keep_rig_file
 from murkscan.io.rig_toml import load_rig
 from murkscan.survey.calibrate_camera import calibrate_camera_from_photos
 from murkscan.survey.calibrate_laser import calibrate_laser_from_photos
@@ -68,6 +69,23 @@ def test_the_camera_is_written_and_every_photo_drawn(photos, tmp_path):
     drawn = sorted(file.name for file in (tmp_path / "calibrate" / "camera").glob("*.jpg"))
     assert drawn == [f"photo{number}.png.found.jpg" for number in range(len(TILTS))]
     assert result.num_photos == len(TILTS)
+
+
+def test_what_each_step_left_is_kept_and_never_changed(photos, tmp_path):
+    rig = tmp_path / "rig.toml"
+    rig.write_text("# by hand\nformat = 1\n", "utf-8")
+    first = calibrate_camera_from_photos(photos, BOARD, rig)
+    left = rig.read_bytes()
+    assert first.record.read_bytes() == left
+    rig.write_text(rig.read_text("utf-8") + "# a word of mine\n", "utf-8")
+    second = calibrate_camera_from_photos(photos, BOARD, rig)
+    records = {file: file.read_bytes() for file in (tmp_path / "calibrate/records").iterdir()}
+    assert records[first.record] == left
+    assert b"# by hand\nformat = 1\n" in records.values()
+    assert left + b"# a word of mine\n" in records.values()
+    assert records[second.record] == rig.read_bytes()
+    assert load_rig(first.record).camera.focal_length == pytest.approx((350, 350), rel=0.01)
+    assert keep_rig_file(rig, "again") == second.record
 
 
 def test_the_record_says_in_what_and_how_well_the_parameters_are_known(photos, tmp_path):

@@ -41,7 +41,7 @@ def print_result(result: "CalibrationResult", rig: Path) -> None:
     say_unused(result.unused, used=len(found.sightings))
     for remark in result.remarks:
         tell("note", remark)
-    tell("made", f"written to {rig}")
+    tell("made", f"written to {rig}; as it is now it is kept as {result.record}")
     tell("look", f"open {result.page}: every photo, and what was found in it")
     tell("next", *_next_steps(found.step, result.verdict.is_good, rig))
 

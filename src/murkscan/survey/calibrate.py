@@ -17,6 +17,7 @@ from ..calibrate.verdict import CalibrationVerdict, judge
 from ..capture.photos import BoardPhotos
 from ..errors import EstimationError, InputError
 from ..io.atomic import replacing
+from ..io.rig_records import keep_rig_file
 from ..io.rig_toml import parse_rig, read_tables, save_calibration
 from .board_views import find_boards
 from .calibrate_drawing import SUFFIX, draw_photos
@@ -42,6 +43,8 @@ class CalibrationResult:
     """Folder of the photos with what was found drawn over them."""
     page: Path
     """The page that shows all of it."""
+    record: Path
+    """The rig file as this step left it; see `io.rig_records`."""
     remarks: tuple[str, ...] = ()
     """What else is to be said, such as what must be calibrated again."""
 
@@ -128,15 +131,18 @@ class BoardSession:
         record["unused"] = self.unused
         if calibration.step in ("port", "laser"):
             record["before"] = snapshot(self.tables, lasers=calibration.lasers)
+        if self.rig_path.exists():
+            keep_rig_file(self.rig_path, f"before-{self.folder.name}")
         save_calibration(self.rig_path, calibration.rig, step, record=record,
                          lasers=_moved(calibration), keep_water=keep_water)  # fmt: skip
+        kept = keep_rig_file(self.rig_path, self.folder.name)
         self._draw(calibration)
         page = self.folder / "index.html"
         with replacing(page) as aside:
             text = write_page(calibration, verdict, self.unused, title=title, suffix=SUFFIX)
             aside.write_text(text, "utf-8")
         return CalibrationResult(
-            calibration, verdict, len(self.views), self.unused, self.folder, page, remarks
+            calibration, verdict, len(self.views), self.unused, self.folder, page, kept, remarks
         )
 
     def _say_what_lost_its_covariance(self, calibration: Calibration) -> tuple[str, ...]:
