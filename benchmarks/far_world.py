@@ -33,8 +33,8 @@ NOTE = """
 One simulated recording of a ship model's hull is scanned three times: with its poses as they are,
 with 432 km east, 5 412 km north and 12 m below added to them, and with 0.123, 0.678 and 0.345 m
 more. What is written is read again; origins that files state are added. "moved" is the largest
-difference of any coordinate beside the shift; LAS counts in steps of 10 µm from a whole metre, to
-which places are rounded where the shift is none of its steps. The page's places are rounded by
+difference of any coordinate beside the shift; LAS counts in steps of 1 µm from a whole metre. The
+page's places are rounded by
 design, to the step below.
 """
 MEASURES = {
@@ -116,13 +116,12 @@ def measures(near: Path, far: Path, shift: np.ndarray) -> float:
 
 def compare(near: Path, far: Path, shift: np.ndarray, name: str) -> list[Figure]:
     """Compare all that both scans have left."""
-    is_odd = name != ""
     figures = [
         Figure(
             f"{suffix} cloud, moved{name}",
             moved(*(load_cloud_file(Path(f"{out}.{suffix}")).points for out in (near, far)), shift),
             "µm",
-            at_most=10.0 if suffix == "laz" and is_odd else 1.0,
+            at_most=1.0,
         )
         for suffix in ("ply", "laz", "e57")
     ]

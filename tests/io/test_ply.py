@@ -15,7 +15,7 @@ from murkscan.types.cloud import PointCloud
 CONTRACT = [
     *("double x", "double y", "double z", "float nx", "float ny", "float nz", "float signal"),
     *("float posterior", "float sigma", "float sigma_common", "int frame"),
-    *("int scan_line", "uchar laser", "uchar branch"),
+    *("int scan_line", "uchar laser", "uchar branch", "float reflectance"),
 ]
 
 

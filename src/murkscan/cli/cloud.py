@@ -7,7 +7,7 @@ from cyclopts import Parameter
 
 from ..errors import InputError
 from ..ui.choices import make_rules
-from .options import ExecutorFlags, MaybePlace
+from .options import Attenuation, ExecutorFlags, MaybePlace
 from .paths import ScanFolder
 from .progress import progress_bars
 from .typed import WORDS
@@ -20,6 +20,7 @@ def cloud(
     voxel_mm: float | None = None,
     min_posterior: float = 0.5,
     volume_m: MaybePlace = None,
+    attenuation_per_m: Attenuation = None,
     frames: Annotated[bool, Parameter(negative=())] = False,
     work: ExecutorFlags = ExecutorFlags(),
 ) -> None:
@@ -63,8 +64,9 @@ def cloud(
         else:
             rig = load_scan_rig(project)
             result = build_cloud(
-                project, rig, rules=rules, frames=frames, executor=executor, progress=progress
-            )
+                project, rig, rules=rules, attenuation=attenuation_per_m, frames=frames,
+                executor=executor, progress=progress,
+            )  # fmt: skip
         voxel = None if voxel_mm is None else voxel_mm / 1e3
         written = [
             export_cloud(project, path, voxel=voxel, executor=executor, progress=progress)

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from ..errors import InputError
+from ..ui.values import read_pose
 from .progress import progress_bars
 from .typed import WORDS
 
@@ -17,6 +18,7 @@ def merge(
     voxel_mm: float | None = None,
     as_logged: Annotated[bool, Parameter(negative=())] = False,
     unit: Literal["m", "cm", "mm", "in", "ft"] = "m",
+    start: Annotated[tuple[str, ...], Parameter(negative=(), allow_leading_hyphen=True)] = (),
 ) -> None:
     """Lay several scans of one object on another and merge them into one cloud.
 
@@ -40,12 +42,18 @@ def merge(
         Move nothing: the poses of all passes are in one frame already, and good enough.
     unit
         Unit of the clouds of other programs, of places and sigmas; scans are in metres.
+    start
+        Where a pass lies in the world of the first one, about: its origin as X,Y,Z [m], or
+        X,Y,Z,QW,QX,QY,QZ with how it is turned. Once for each pass after the first, in order.
     """
     if not passes:
         raise InputError("Give the folders of two scans or more: murkscan merge A B --out OUT.")
     for flag, value in (("--reach-mm", reach_mm), ("--voxel-mm", voxel_mm)):
         if value is not None and not 0 < value < float("inf"):
             raise InputError(f"{flag} must be above 0, got {value:g}.")
+    if start and as_logged:
+        raise InputError("--start says where aligning begins, and --as-logged aligns nothing.")
+    starts = [read_pose("--start", text) for text in start]
     from ..measure.reference import UNITS
     from ..survey.merge import merge_passes
     from .summary import print_result
@@ -59,6 +67,7 @@ def merge(
             reach=None if reach_mm is None else reach_mm / 1e3,
             voxel=None if voxel_mm is None else voxel_mm / 1e3,
             unit=UNITS[unit],
+            starts=starts,
             command=WORDS.get(),
             progress=progress,
         )

@@ -20,7 +20,7 @@ def mesh(
     settings: Settings = (),
     close_holes_mm: float | None = None,
     faces: int | None = None,
-    colour: Literal["depth", "signal", "none"] = "depth",
+    colour: Literal["depth", "signal", "reflectance", "none"] = "depth",
     export: Annotated[tuple[Path, ...], Parameter(negative=())] = (),
     work: ExecutorFlags = ExecutorFlags(),
 ) -> None:
@@ -39,7 +39,8 @@ def mesh(
     faces
         Leave about so many triangles: few where the surface is flat, more where it is curved.
     colour
-        Colour the vertices by depth, or by the stripe's brightness.
+        Colour the vertices by depth, by the stripe's brightness, or by its reflectance: what its
+        brightness would be without distance, water and slope.
     export
         Write the surface to this file, too: .ply, .stl, .obj or .glb; may be given again.
     """
@@ -49,7 +50,7 @@ def mesh(
         raise InputError(f"--faces must be 4 or more, got {faces}.")
     check_settings(settings)
     executor = work.make()
-    from ..mesh import ByDepth, BySignal
+    from ..mesh import ByDepth, ByReflectance, BySignal
     from ..project import Project
     from ..survey.mesh import Finish, build_mesh, check_mesh_export, export_mesh
     from .summary import print_result
@@ -57,10 +58,13 @@ def mesh(
 
     for path in export:
         check_mesh_export(path)
+    paints = {
+        "depth": ByDepth(), "signal": BySignal(), "reflectance": ByReflectance(), "none": None
+    }  # fmt: skip
     finish = Finish(
         largest_hole=None if close_holes_mm is None else close_holes_mm / 1e3,
         faces=faces,
-        paint={"depth": ByDepth(), "signal": BySignal(), "none": None}[colour],
+        paint=paints[colour],
     )
     chosen = make_mesher(mesher, settings)
     project = Project(out, WORDS.get())

@@ -22,10 +22,23 @@ if TYPE_CHECKING:
     from ..types.trajectory import Trajectory
 
 
+def _require_attenuation(_: object, value: float | None) -> None:
+    if value is not None and not 0 <= value < float("inf"):
+        raise InputError(f"--attenuation-per-m must be 0 or more, got {value:g}.")
+
+
 Place = Annotated[str, Parameter(allow_leading_hyphen=True)]
 """Coordinates parted by commas, of which the first may be negative."""
 MaybePlace = Annotated[str | None, Parameter(allow_leading_hyphen=True)]
 """The same, which may be left out."""
+Attenuation = Annotated[
+    float | None,
+    Parameter(
+        help="Beam attenuation of the water per metre, by which the points' reflectance is "
+        "corrected; as the laser's glow tells it unless said.",
+        validator=_require_attenuation,
+    ),
+]
 MOTION = Group("How the camera moved", sort_key=11)
 READING = Group("How to read the recording", sort_key=12)
 WORK = Group("Who does the work", sort_key=13)

@@ -17,6 +17,7 @@ from ..ui.choices import (
 )
 from ..ui.values import read_box
 from .options import (
+    Attenuation,
     ExecutorFlags,
     Lasers,
     MaybePlace,
@@ -46,6 +47,7 @@ def scan(
     laser: Lasers = (),
     no_adjust: NoAdjust = False,
     volume_m: MaybePlace = None,
+    attenuation_per_m: Attenuation = None,
     frames: Annotated[bool, Parameter(negative=())] = False,
 ) -> None:
     """Turn a recording into a measured 3D model: all stages in order.
@@ -101,6 +103,7 @@ def scan(
             lasers=laser,
             adjust=not no_adjust,
             rules=make_rules(volume_m),
+            attenuation=attenuation_per_m,
             frames=frames,
             rig_file=rig,
             command=WORDS.get(),

@@ -22,6 +22,7 @@ _SUMS = np.dtype(
         ("signal", "f8"),
         ("posterior", "f8"),
         ("sigma_common", "f8"),
+        ("reflectance", "f8"),
         ("best", "f8"),
         ("frame", "i4"),
         ("scan_line", "i4"),
@@ -30,6 +31,8 @@ _SUMS = np.dtype(
     ]
 )
 """What is kept of a voxel: sums times weight, 1/σ², and which point was known best."""
+_MEANS = ("signal", "posterior", "sigma_common", "reflectance")
+"""What is averaged."""
 _NUMBERS = ("frame", "scan_line", "laser", "branch")
 """What tells which point was known best."""
 _SPREAD = 0x9E3779B97F4A7C15
@@ -132,7 +135,7 @@ def _sum(cloud: PointCloud, grid: VoxelGrid) -> np.ndarray:
     rows["weight"], rows["information"] = weight, np.where(known, weight, 0.0)
     rows["points"] = cloud.points * weight[:, None]
     rows["normals"] = cloud.normals * weight[:, None]
-    for name in ("signal", "posterior", "sigma_common"):
+    for name in _MEANS:
         rows[name] = getattr(cloud, name) * weight
     for name in _NUMBERS:
         rows[name] = getattr(cloud, name)
@@ -150,9 +153,8 @@ def _merge(parts: list[np.ndarray]) -> np.ndarray:
     merged = rows[starts]
     if len(starts) == len(rows):
         return merged
-    for name in ("weight", "information", "points", "normals", "signal", "posterior"):
+    for name in ("weight", "information", "points", "normals", *_MEANS):
         merged[name] = np.add.reduceat(rows[name], starts, axis=0)
-    merged["sigma_common"] = np.add.reduceat(rows["sigma_common"], starts)
     merged["best"] = np.maximum.reduceat(rows["best"], starts)
     voxel = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(rows))))
     is_best = np.flatnonzero(rows["best"] == merged["best"][voxel])[::-1]
@@ -178,9 +180,6 @@ def _as_cloud(rows: np.ndarray) -> PointCloud:
         points=rows["points"] / weight[:, None],
         normals=rows["normals"] / np.where(length > 0, length, 1),
         sigma=sigma.astype(np.float32),
-        **{
-            name: (rows[name] / weight).astype(np.float32)
-            for name in ("signal", "posterior", "sigma_common")
-        },
+        **{name: (rows[name] / weight).astype(np.float32) for name in _MEANS},
         **{name: np.ascontiguousarray(rows[name]) for name in _NUMBERS},
     )

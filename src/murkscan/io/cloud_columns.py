@@ -10,11 +10,22 @@ COLUMNS = np.dtype(
     [(name, "<f8") for name in ("x", "y", "z")]
     + [(name, "<f4") for name in ("nx", "ny", "nz")]
     + [(name, "<f4") for name in ("signal", "posterior", "sigma", "sigma_common")]
-    + [("frame", "<i4"), ("scan_line", "<i4"), ("laser", "u1"), ("branch", "u1")]
+    + [
+        ("frame", "<i4"),
+        ("scan_line", "<i4"),
+        ("laser", "u1"),
+        ("branch", "u1"),
+        ("reflectance", "<f4"),
+    ]
 )
 """The columns of cloud.ply, in order."""
-SCALARS = ("signal", "posterior", "sigma", "sigma_common", "frame", "scan_line", "laser", "branch")
+SCALARS = (
+    "signal", "posterior", "sigma", "sigma_common", "frame", "scan_line", "laser", "branch",
+    "reflectance",
+)  # fmt: skip
 """Those that are no coordinates; named as the fields of a cloud."""
+ADDED = ("reflectance",)
+"""Columns that clouds of earlier versions lack."""
 BLOCK = 500_000
 """Points that are read or written at once."""
 
@@ -51,7 +62,8 @@ def known_name(name: str) -> str | None:
 def from_columns(columns: Mapping[str, np.ndarray]) -> PointCloud:
     """Make a cloud of columns by our names, of which x, y and z must be there.
 
-    What is missing says nothing: no normals, signal 0, posterior 1, no sigma, frame 0, branch 0.
+    What is missing says nothing: no normals, signal 0, posterior 1, no sigma, frame 0, branch 0,
+    reflectance 0.
     """
     count = len(columns["x"])
 

@@ -5,6 +5,8 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 from pathlib import Path
 
+import numpy as np
+
 from ..errors import InputError
 from ..types.cloud import PointCloud
 from .cloud_columns import BLOCK
@@ -23,15 +25,9 @@ _WRITERS: dict[str, Callable[[Path], _Writing]] = {
     ".xyz": writing_xyz,
     ".csv": writing_csv,
 }
-_PLACED_WRITERS: dict[str, Callable[[Path, str], _Writing]] = {
-    ".las": writing_las,
-    ".laz": writing_las,
-    ".e57": writing_e57,
-}
-"""Those that keep a coordinate system."""
 
 
-def writing_cloud_file(path: Path, *, wkt: str = "") -> _Writing:
+def writing_cloud_file(path: Path, *, wkt: str = "", extent: float = np.inf) -> _Writing:
     """Write a cloud block by block, in the format of the suffix.
 
     The file appears whole when the context ends, or not at all. XYZ keeps positions and normals
@@ -42,6 +38,8 @@ def writing_cloud_file(path: Path, *, wkt: str = "") -> _Writing:
     Args:
         path: The file; its suffix is one of .ply, .las, .laz, .e57, .xyz and .csv.
         wkt: Coordinate system as well-known text, which LAS, LAZ and E57 keep; empty for none.
+        extent: Size of the cloud along its longest edge, at most [m]: LAS and LAZ count in finer
+            steps where it is below 2 km.
 
     Raises:
         InputError: The suffix is another.
@@ -50,9 +48,11 @@ def writing_cloud_file(path: Path, *, wkt: str = "") -> _Writing:
     check_cloud_suffix(path)
     suffix = path.suffix.lower()
     if path.name.lower().endswith(".copc.laz"):
-        return writing_copc(path, wkt)
-    if suffix in _PLACED_WRITERS:
-        return _PLACED_WRITERS[suffix](path, wkt)
+        return writing_copc(path, wkt, extent)
+    if suffix in (".las", ".laz"):
+        return writing_las(path, wkt, extent)
+    if suffix == ".e57":
+        return writing_e57(path, wkt)
     return _WRITERS[suffix](path)
 
 

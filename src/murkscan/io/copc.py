@@ -41,15 +41,18 @@ _SEED = 0
 
 
 @contextmanager
-def writing_copc(path: Path, wkt: str = "") -> Iterator[Callable[[PointCloud], None]]:
+def writing_copc(
+    path: Path, wkt: str = "", extent: float = np.inf
+) -> Iterator[Callable[[PointCloud], None]]:
     """Write a cloud block by block as COPC.
 
-    The blocks are kept on the disk beside the file, in 68 bytes a point, until all are there; then
+    The blocks are kept on the disk beside the file, in 72 bytes a point, until all are there; then
     they are sorted by nodes, a million at a time. Everything else is as `writing_las` has it.
 
     Args:
         path: The file, ending in .copc.laz.
         wkt: Coordinate system as well-known text; empty for none.
+        extent: Size of the cloud along its longest edge, at most [m].
 
     Raises:
         InputError: There are no points, they lie farther than 21 km from the first ones, or are
@@ -58,7 +61,7 @@ def writing_copc(path: Path, wkt: str = "") -> Iterator[Callable[[PointCloud], N
     """
     import laspy
 
-    header, is_placed = make_las_header(laspy, wkt), False
+    header, is_placed = make_las_header(laspy, wkt, extent), False
     header.mins, header.maxs = np.full(3, np.inf), np.full(3, -np.inf)
     with (
         replacing(path) as aside,

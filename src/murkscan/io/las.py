@@ -18,24 +18,31 @@ from .laz_chunks import check_laz_chunks
 if TYPE_CHECKING:
     pass
 
-_STEP = 1e-5
-"""Step of the coordinates [m]: a tenth of the noise of the best points."""
+_STEPS = (1e-6, 1e-5)
+"""Steps of the coordinates [m]: the second, a tenth of the noise of the best points, where the
+points' extent has no room for the first, by which a cloud elsewhere is the same to a micrometre."""
+_ROOM = 2000.0
+"""Extent up to which the first is taken [m]; 2³¹ of them are 2147 m."""
 _EXTRA = [name for name in COLUMNS.names or () if name not in "xyz"]
 _BRIGHTEST = 65535
 _POINT_FORMAT = 6
 
 
 @contextmanager
-def writing_las(path: Path, wkt: str = "") -> Iterator[Callable[[PointCloud], None]]:
+def writing_las(
+    path: Path, wkt: str = "", extent: float = np.inf
+) -> Iterator[Callable[[PointCloud], None]]:
     """Write a cloud block by block, packed where the suffix is .laz.
 
-    Coordinates are in metres, in steps of 0.01 mm from the whole metre next to the first points.
+    Coordinates are in metres, in steps of 0.001 mm from the whole metre next to the first points;
+    of 0.01 mm where the cloud extends over more than 2 km.
     What LAS has no field for are extra dimensions with the names of cloud.ply's columns; `signal`
     is the intensity, too. The file appears whole when the context ends, or not at all.
 
     Args:
         path: The file.
         wkt: Coordinate system as well-known text; empty for none.
+        extent: Size of the cloud along its longest edge, at most [m].
 
     Raises:
         InputError: Points lie farther than 21 km from the first ones, or are not finite.
@@ -43,7 +50,7 @@ def writing_las(path: Path, wkt: str = "") -> Iterator[Callable[[PointCloud], No
     """
     import laspy
 
-    header = make_las_header(laspy, wkt)
+    header = make_las_header(laspy, wkt, extent)
     is_placed = False
     with replacing(path) as aside, blaming_the_disk():
         writer = laspy.open(aside, mode="w", header=header, do_compress=_is_laz(path))
@@ -63,11 +70,11 @@ def writing_las(path: Path, wkt: str = "") -> Iterator[Callable[[PointCloud], No
             yield write
 
 
-def make_las_header(laspy: Any, wkt: str) -> Any:
+def make_las_header(laspy: Any, wkt: str, extent: float) -> Any:
     """Make the header of a cloud's file, with the extra dimensions that hold its columns."""
     header = laspy.LasHeader(point_format=_POINT_FORMAT, version="1.4")
     header.generating_software = "murkscan"
-    header.scales = np.full(3, _STEP)
+    header.scales = np.full(3, _STEPS[0] if extent < _ROOM else _STEPS[1])
     header.global_encoding.wkt = True  # always, with these points (LAS 1.4 R15, table 4)
     if wkt:
         header.vlrs.append(laspy.vlrs.known.WktCoordinateSystemVlr(wkt))
@@ -148,10 +155,10 @@ def as_las_points(laspy: Any, header: Any, cloud: PointCloud, path: Path) -> Any
     Raises:
         InputError: They lie too far from the header's offsets; `path` is what it calls the file.
     """
-    steps = np.abs(cloud.points - header.offsets).max() / _STEP
-    if steps > np.iinfo(np.int32).max:
+    away = float(np.abs(cloud.points - header.offsets).max())
+    if away / header.scales[0] > np.iinfo(np.int32).max:
         raise InputError(
-            f"{path} cannot hold points that lie {steps * _STEP:g} m from the first ones: LAS "
+            f"{path} cannot hold points that lie {away:g} m from the first ones: LAS "
             "counts in steps. Export to .ply or .e57."
         )
     points = laspy.ScaleAwarePointRecord.zeros(len(cloud), header=header)

@@ -16,7 +16,7 @@ from ..types.profile import Profile
 from ..types.stripe import Stripe
 from ..types.true_stripe import TrueStripe
 from .atomic import replacing
-from .cloud_columns import COLUMNS, as_rows, from_columns
+from .cloud_columns import ADDED, COLUMNS, as_rows, from_columns
 
 _SHOWN_AS = {"scan_line": "line"} | {axis: f"{axis}_m" for axis in "xyz"}
 """What columns of a cloud are called here, where units stand in the names."""
@@ -144,7 +144,8 @@ def load_cloud_part(path: Path) -> CloudPart:
     words, numbers = np.unique(columns["taken_out"].astype(str), return_inverse=True)
     causes = tuple(word for word in words.tolist() if word)
     taken_out = numbers + (0 if "" in words else 1)
-    cloud = from_columns({name: columns[_SHOWN_AS.get(name, name)] for name in _ORDER})
+    there = [name for name in _ORDER if name not in ADDED or name in columns]
+    cloud = from_columns({name: columns[_SHOWN_AS.get(name, name)] for name in there})
     return CloudPart(cloud, taken_out.astype(np.uint8), causes)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import FormatError
 from ..types.cloud import PointCloud
 from .atomic import replacing
-from .cloud_columns import BLOCK, COLUMNS, as_rows, from_columns
+from .cloud_columns import ADDED, BLOCK, COLUMNS, as_rows, from_columns
 
 _TYPES = {"<f8": "double", "<f4": "float", "<i4": "int", "|u1": "uchar"}
 """What PLY calls them."""
@@ -97,7 +97,7 @@ def iterate_cloud(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud]:
             )
         for begin in range(0, count, block):
             rows = np.fromfile(file, columns, min(block, count - begin))
-            yield from_columns({name: rows[name] for name in COLUMNS.names or ()})
+            yield from_columns({name: rows[name] for name in columns.names or ()})
 
 
 def _header(count: int, columns: np.dtype[np.void]) -> bytes:
@@ -136,7 +136,7 @@ def _known_column(words: list[str], path: Path) -> str:
 
 
 def _require_columns(names: list[str], count: int, path: Path) -> None:
-    missing = [name for name in COLUMNS.names or () if name not in names]
+    missing = [name for name in COLUMNS.names or () if name not in (*names, *ADDED)]
     if missing or count < 0 or len(set(names)) < len(names):
         raise FormatError(
             f"{path} lacks the column {missing[0]!r}."

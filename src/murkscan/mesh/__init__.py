@@ -7,6 +7,7 @@ done to a surface afterwards, on request, are functions and paints.
 from .base import AbstractMesher as AbstractMesher
 from .base import join_tiles as join_tiles
 from .by_depth import ByDepth as ByDepth
+from .by_signal import ByReflectance as ByReflectance
 from .by_signal import BySignal as BySignal
 from .decimate import decimate as decimate
 from .grid_mesh import GridMesh as GridMesh

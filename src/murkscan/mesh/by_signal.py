@@ -1,4 +1,4 @@
-"""Colour by signal: how bright the stripe was, which shows paint, growth and writing."""
+"""Colour by how bright the stripe was, as it was seen or as the paint alone makes it."""
 
 from dataclasses import dataclass
 from typing import final
@@ -16,9 +16,28 @@ class BySignal(AbstractPaint):
 
     def paint(self, mesh: Mesh, signal: Signal) -> Colours:
         """Give each vertex the colour of its point's signal; see `AbstractPaint.paint`."""
-        if mesh.points is None:
-            raise InputError(
-                "The surface does not say which points its vertices are, as one from another "
-                "program does not; make it from the cloud again."
-            )
-        return map_colours(signal[mesh.points].astype(float), "cividis")
+        return _map_brightness(mesh, signal)
+
+
+@final
+@dataclass(frozen=True)
+class ByReflectance(AbstractPaint):
+    """Cividis, bright where the paint is bright: without distance, water and slope.
+
+    What is not known is as dark as the darkest.
+    """
+
+    column = "reflectance"
+
+    def paint(self, mesh: Mesh, signal: Signal) -> Colours:
+        """Give each vertex the colour of its point's reflectance; see `AbstractPaint.paint`."""
+        return _map_brightness(mesh, signal)
+
+
+def _map_brightness(mesh: Mesh, values: Signal) -> Colours:
+    if mesh.points is None:
+        raise InputError(
+            "The surface does not say which points its vertices are, as one from another program "
+            "does not; make it from the cloud again."
+        )
+    return map_colours(values[mesh.points].astype(float), "cividis")

@@ -1,6 +1,7 @@
 """Give a surface colours that say something."""
 
 import abc
+from typing import ClassVar, Literal
 
 import numpy as np
 from jaxtyping import Float32
@@ -18,13 +19,16 @@ _SHARE = 0.5
 class AbstractPaint(abc.ABC):
     """A way to colour a surface. Subclasses are final: wrap one, do not subclass it."""
 
+    column: ClassVar[Literal["signal", "reflectance"]] = "signal"
+    """The column of the cloud that it looks at."""
+
     @abc.abstractmethod
     def paint(self, mesh: Mesh, signal: Signal) -> Colours:
         """Compute a colour for each vertex.
 
         Args:
             mesh: The surface, with one vertex or more.
-            signal: That of each point of the cloud it was made of [grey levels].
+            signal: The column's value for each point of the cloud it was made of [grey levels].
 
         Raises:
             InputError: It does not say which points its vertices are.

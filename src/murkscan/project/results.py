@@ -166,6 +166,9 @@ class CloudResult:
     """Points that were taken out."""
     outliers_by: Mapping[str, int] = field(default_factory=dict)
     """How many of them for each cause."""
+    attenuation: float | None = field(default=None, metadata={"unit": "per_m"})
+    """Beam attenuation of the water that the points' reflectance is corrected for [1/m]; None: none
+    was known."""
     passes: tuple[PassResult, ...] = ()
     """The scans that a merged cloud was made of."""
 

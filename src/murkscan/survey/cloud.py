@@ -11,6 +11,7 @@ import numpy as np
 
 from ..cloud import OUTLIER_RULES, AbstractOutlierRule, SeenCloud, find_outliers, merge_profiles
 from ..distribute import AbstractExecutor, Threads
+from ..optics.reflectance import StripeBrightness
 from ..optics.seen_points import spread_common
 from ..project import (
     CLOUD,
@@ -29,6 +30,7 @@ from ..types.profile import Profile
 from ..types.rig import Rig
 from ..types.trajectory import Trajectory
 from .progress import Progress, silent
+from .reflectance import find_brightness, tell_reflectance
 from .stage_runner import run_stage
 
 FRAME_FILES = 500
@@ -40,6 +42,7 @@ def build_cloud(
     rig: Rig,
     *,
     rules: Sequence[AbstractOutlierRule] = OUTLIER_RULES,
+    attenuation: float | None = None,
     frames: bool = False,
     block: int = BLOCK,
     executor: AbstractExecutor | None = None,
@@ -51,6 +54,8 @@ def build_cloud(
         project: A scan with finished triangulate and motion stages.
         rig: Its rig.
         rules: The reasons not to believe a point.
+        attenuation: Beam attenuation of the water [1/m], for the points' reflectance; what the glow
+            told unless given.
         frames: Whether to write one cloud a frame for more than 500 frames, too.
         block: Points that are worked on at once, about; the result depends on it.
         executor: Who does it; threads unless given. The result is the same.
@@ -63,19 +68,23 @@ def build_cloud(
     triangulated, moved = project.finished(TRIANGULATE), project.finished(MOTION)
     rig = as_it_moves(rig, carries_mount=moved.result.carries_mount)
     extracted = project.finished(EXTRACT).result
+    water = extracted.attenuation
+    if attenuation is None and water is not None and water.is_telling:
+        attenuation = water.effective
     stage = project.stage(
         CLOUD,
-        settings={"frames": frames, "rules": describe(tuple(rules))},
+        settings={"frames": frames, "rules": describe(tuple(rules)), "attenuation": attenuation},
         inputs={"triangulate": triangulated.digest, "motion": moved.digest}
         | {"covariance": describe(rig.covariance)},
     )
 
     def make(sizes: Mapping[int, int]) -> CloudResult:
-        job = _Job(project, moved.digest, rig, tuple(rules))
+        bright = find_brightness(project, rig, extracted.lasers, attenuation)
+        job = _Job(project, moved.digest, rig, tuple(rules), bright)
         blocks = cut_blocks(sizes, block=block)
         result = _make_parts(job, blocks, executor or Threads(), progress)
         project.export_cloud(frames=frames or extracted.frames <= FRAME_FILES)
-        return result
+        return replace(result, attenuation=attenuation)
 
     return run_stage(project, stage, make, prepare=project.count_profile_points, progress=progress)
 
@@ -89,6 +98,8 @@ class _Job:
     """Digest of the motion stage."""
     rig: Rig
     rules: Sequence[AbstractOutlierRule]
+    brightness: Mapping[int, StripeBrightness]
+    """By the number of the laser."""
 
     def place(self, block: Block) -> list[CloudPart]:
         """Carry a block's points to the world, and tell which of them are no surface."""
@@ -104,7 +115,9 @@ class _Job:
         for number, which in enumerate(found.values(), 1):
             taken_out[which] = number
         common = spread_common(profile[own], trajectory, self.rig)
-        placed = CloudPart(replace(cloud[own], sigma_common=common), taken_out[own], tuple(found))
+        paint = tell_reflectance(profile[own], cloud[own].normals, trajectory, self.brightness)
+        told = replace(cloud[own], sigma_common=common, reflectance=paint)
+        placed = CloudPart(told, taken_out[own], tuple(found))
         ends = np.cumsum(sizes[1:-1]).tolist()
         return [placed[end - size : end] for size, end in zip(sizes[1:-1], ends, strict=True)]
 

@@ -4,16 +4,29 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from ..cloud import thin_clouds
 from ..distribute import AbstractExecutor, Threads
 from ..errors import InputError
 from ..io.cloud_files import check_cloud_suffix, writing_cloud_file
-from ..project import ACCEPT, CLOUD, GEOREFERENCE, MEASURE, STAGES, Project, load_georeference
+from ..project import (
+    ACCEPT,
+    CLOUD,
+    GEOREFERENCE,
+    MEASURE,
+    STAGES,
+    Project,
+    find_trajectory,
+    load_georeference,
+)
 from ..types.cloud import PointCloud
 from .progress import Progress, silent
 
 _FOLDERS = tuple(kind.word for kind in (*STAGES, GEOREFERENCE, MEASURE, ACCEPT))
 """Folders in which only stages write."""
+_SIGHT = 100.0
+"""Distance to which no camera sees a laser's line under water [m]."""
 
 
 def export_cloud(
@@ -51,13 +64,26 @@ def export_cloud(
         raise InputError(f"The cloud of {project.root} has no points; there is nothing to export.")
     blocks, place = _Blocks(project, executor or Threads()), load_georeference(project)
     written = 0
-    with writing_cloud_file(path, wkt="" if place is None else place.wkt) as write:
+    wkt, extent = "" if place is None else place.wkt, _find_extent(project, blocks)
+    with writing_cloud_file(path, wkt=wkt, extent=extent) as write:
         for block in blocks if voxel is None else thin_clouds(blocks, voxel):
             write(block if place is None else place.carry(block))
             written += len(block)
             progress("export", written, count if voxel is None else None)
     progress("export", written, written)
     return written
+
+
+def _find_extent(project: Project, blocks: "_Blocks") -> float:
+    """Give an upper limit of a cloud's longest edge [m]."""
+    trajectory = find_trajectory(project)
+    if trajectory is not None:
+        return float(np.linalg.norm(np.ptp(trajectory.positions, axis=0))) + 2 * _SIGHT
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    for block in blocks:
+        low = np.minimum(low, block.points.min(axis=0, initial=np.inf))
+        high = np.maximum(high, block.points.max(axis=0, initial=-np.inf))
+    return float(np.linalg.norm(high - low))  # a place on the Earth may turn it
 
 
 def check_export(path: Path) -> None:

@@ -27,6 +27,7 @@ from ..project import (
     PassResult,
     Project,
     ScanRecord,
+    describe,
     is_merged,
 )
 from ..project.passes import NumberedPass, PassSource, expand_merged, look_at, number_passes
@@ -47,6 +48,7 @@ def merge_passes(
     reach: float | None = None,
     voxel: float | None = None,
     unit: float = 1.0,
+    starts: Sequence[Pose] = (),
     command: Sequence[str] = (),
     progress: Progress = silent,
 ) -> CloudResult:
@@ -61,11 +63,14 @@ def merge_passes(
         reach: Distance up to which surfaces are looked for in each other's place [m].
         voxel: Edge of the voxels to thin the result to [m]; None keeps all points.
         unit: Length of the unit of clouds of other programs [m]; scans are in metres.
+        starts: Where each path after the first lies in the world of the first, about: aligning
+            begins there. None: where it is.
         command: The words that were typed after `murkscan`, for the record.
         progress: Told how many passes are aligned.
 
     Raises:
-        InputError: out is no new folder, a pass is empty or numbers its frames too high, or the
+        InputError: out is no new folder, there is not one start for each path after the first, a
+            pass is empty or numbers its frames too high, or the
             voxels are too small for where the points lie.
         MissingResult: A pass does not exist, or has no finished cloud.
         FormatError: A file is damaged.
@@ -74,18 +79,19 @@ def merge_passes(
         DeviceError: The disk is full.
     """
     project = Project(out, tuple(command))
-    sources = list(expand_merged(paths, unit=unit))
+    sources, begin = _expand(paths, unit, starts)
     _check_out(project, sources)
     records = [source.as_record(out) for source in sources]
     stage = project.stage(
         CLOUD,
-        settings={"align": align, "reach": reach, "voxel": voxel},
+        settings={"align": align, "reach": reach, "voxel": voxel}
+        | ({"starts": describe(tuple(starts))} if starts else {}),
         inputs={"passes": [one.identity for one in records]},
     )
     ready = None
     if stage.result() is None:  # what is refused is refused before anything is written
         passes = number_passes([*map(look_at, sources, records)])
-        laid = _align_all(passes, reach, progress) if align else [_STAYS] * len(passes)
+        laid = _align_all(passes, begin, reach, progress) if align else [_STAYS] * len(passes)
         moved = _Moved(passes, [one.pose for one in laid])
         blocks = iter(moved if voxel is None else thin_clouds(moved, voxel))
         ready = chain([next(blocks)], blocks), tuple(map(_tell, passes, laid))
@@ -106,6 +112,24 @@ def merge_passes(
         result = run_stage(project, stage, make, prepare=lambda: None, progress=progress)
         _follow(project, sources, result)
     return result
+
+
+def _expand(
+    paths: Sequence[Path], unit: float, starts: Sequence[Pose]
+) -> tuple[list[PassSource], list[Pose]]:
+    """Give all passes, and where each lies, about."""
+    if starts and len(starts) != len(paths) - 1:
+        raise InputError(
+            f"There are {len(starts)} starts for {len(paths)} passes; give one for each but the "
+            "first, 0,0,0 for one that lies where it should."
+        )
+    begin = [Pose.identity(), *(starts or [Pose.identity()] * (len(paths) - 1))]
+    found = [
+        (source, start)
+        for path, start in zip(paths, begin, strict=True)
+        for source in expand_merged([path], unit=unit)
+    ]
+    return [source for source, _ in found], [start for _, start in found]
 
 
 def _follow(project: Project, sources: Sequence[PassSource], merged: CloudResult) -> None:
@@ -255,7 +279,10 @@ def _pose_of(one: PassResult) -> Pose:
 
 
 def _align_all(
-    passes: Sequence[NumberedPass], reach: float | None, progress: Progress
+    passes: Sequence[NumberedPass],
+    begin: Sequence[Pose],
+    reach: float | None,
+    progress: Progress,
 ) -> list[_Laid]:
     """Lay each pass on what is in place; one that does not overlap yet waits for others."""
     placed, waiting = _Placed.begin(passes), list(range(1, len(passes)))
@@ -264,7 +291,7 @@ def _align_all(
         refusal: Degenerate | None = None
         for number in waiting:
             try:
-                alignment = _align(passes[number], number, placed, reach)
+                alignment = _align(passes[number], number, placed, begin[number], reach)
             except Degenerate as error:
                 refusal = error
                 continue
@@ -277,16 +304,19 @@ def _align_all(
     return [placed.laid[number] for number in range(len(passes))]
 
 
-def _align(one: NumberedPass, number: int, placed: _Placed, reach: float | None) -> Alignment:
+def _align(
+    one: NumberedPass, number: int, placed: _Placed, start: Pose, reach: float | None
+) -> Alignment:
     """Lay a pass on others by what faced the cameras, if that tells all: flanks are seen wrong."""
     source = one.sample()
     facing = placed.errors.is_facing(np.full(len(source), number), source)
     try:
         with suppress(Degenerate, NotEnoughData):
-            found = align_clouds(source[facing], placed.cloud[placed.facing], reach=reach)
+            target = placed.cloud[placed.facing]
+            found = align_clouds(source[facing], target, reach=reach, start=start)
             if not found.open_directions:
                 return found
-        return align_clouds(source, placed.cloud, reach=reach)
+        return align_clouds(source, placed.cloud, reach=reach, start=start)
     except NotEnoughData as error:
         raise NotEnoughData(
             f"{one.source.path} cannot be laid on the passes before it: it measures "

@@ -199,7 +199,8 @@ def _finish(mesh: Mesh, project: Project, finish: Finish) -> tuple[Mesh, MeshRes
     if finish.faces is not None:
         mesh = decimate(mesh, faces=finish.faces)
     if finish.paint is not None and len(mesh.faces):
-        signal = np.concatenate([part.signal for part in project.iterate_cloud()])
+        column = finish.paint.column
+        signal = np.concatenate([getattr(part, column) for part in project.iterate_cloud()])
         mesh = replace(mesh, colours=finish.paint.paint(mesh, signal))
     return mesh, MeshResult(
         vertices=len(mesh.vertices),

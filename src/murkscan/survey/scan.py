@@ -40,6 +40,7 @@ def scan(
     lasers: Sequence[int] = (),
     adjust: bool = True,
     rules: Sequence[AbstractOutlierRule] = OUTLIER_RULES,
+    attenuation: float | None = None,
     frames: bool = False,
     spacing: float | None = None,
     rig_file: Path | None = None,
@@ -63,6 +64,8 @@ def scan(
         lasers: Numbers of the lasers whose stripes are followed; all of the rig unless given.
         adjust: Whether the scan corrects a motion whose accuracy is stated, from what it saw twice.
         rules: The reasons to take a point out of the cloud.
+        attenuation: Beam attenuation of the water [1/m], by which the points' reflectance is
+            corrected; what the laser's glow tells unless given.
         frames: Whether to write one cloud a frame for more than 500 frames, too.
         spacing: Wanted spacing of the points [m]; the report judges gaps by the scan's own unless
             given.
@@ -96,7 +99,10 @@ def scan(
         )
         triangulate_stripes(project, rig, method, executor=executor, progress=progress)
         follow_motion(project, motion, adjust=adjust, progress=progress)
-        build_cloud(project, rig, rules=rules, frames=frames, executor=executor, progress=progress)
+        build_cloud(
+            project, rig, rules=rules, attenuation=attenuation, frames=frames, executor=executor,
+            progress=progress,
+        )  # fmt: skip
         build_mesh(project, mesher, executor=executor, progress=progress)
         draw_views(project, progress=progress)
         write_report(project, spacing=spacing, progress=progress)

@@ -1,6 +1,6 @@
 """All points of a scan in one frame."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -46,6 +46,11 @@ class PointCloud(Table):
     branch: SmallNumbers
     """Number of the point among those of its scan line, from 0; with laser, frame and scan line it
     says which centre of which stripe the point is."""
+    reflectance: Ratios = field(
+        default_factory=lambda: np.zeros(0, np.float32), metadata={"may_be_left_out": True}
+    )
+    """Brightness of the stripe as it would be on the same paint a metre from the laser, facing it,
+    without water between, in proportion to the paint's albedo [grey levels]; 0 where not known."""
 
     def is_sound(self) -> Mask:
         """Tell which points can be: at a place, with a normal, and with deviations not below 0.

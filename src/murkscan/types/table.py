@@ -19,7 +19,7 @@ class Table(ShortRepr):
     """Columns of equal length. Subclasses are frozen dataclasses whose fields are the columns.
 
     Columns of another type are made to be of their own, if that changes no number but its last
-    digits; else they are refused.
+    digits; else they are refused. One whose metadata say so may be left out, and is 0 then.
     """
 
     def __post_init__(self) -> None:
@@ -32,6 +32,8 @@ class Table(ShortRepr):
         for column in fields(self):  # type: ignore[arg-type]
             label = f"{type(self).__name__}: {column.name}"
             values = _as_column(getattr(self, column.name), column.type, label)
+            if len(values) == 0 and column.metadata.get("may_be_left_out"):
+                values = np.zeros(count, values.dtype)
             count = len(values) if count < 0 else count
             if len(values) != count:
                 raise InputError(f"{label} has {len(values)} rows beside others with {count}.")

@@ -140,6 +140,9 @@ def _layers(cloud: PointCloud, source: Indices) -> tuple[Layer, ...]:
         Layer("signal", cloud.signal[source].astype(float), "grey levels"),
         Layer("sigma", cloud.sigma[source] * 1e3, "mm"),
     ]
+    if np.any(cloud.reflectance > 0):
+        known = np.where(cloud.reflectance > 0, cloud.reflectance, np.nan)[source]
+        layers.append(Layer("reflectance", known.astype(float), ""))
     if np.any(cloud.posterior < 1):
         layers.append(Layer("posterior", cloud.posterior[source].astype(float), ""))
     if np.ptp(cloud.laser) > 0:
