@@ -20,7 +20,7 @@ def apart(tmp_path_factory):
     folder = tmp_path_factory.mktemp("apart")
     points = scan_cloud(bumpy, spacing=4e-3).points
     turn = Rotation.from_euler("z", 90, degrees=True)
-    first, second = points + [6.0, 0.5, 0.2], turn.inv().apply(points)
+    first, second = points + np.array([6.0, 0.5, 0.2]), turn.inv().apply(points)
     for name, places in (("first", first), ("second", second)):
         np.savetxt(folder / f"{name}.xyz", places, "%.7f")
     return first, [str(folder / f"{name}.xyz") for name in ("first", "second")], folder
@@ -31,18 +31,16 @@ def quaternion(degrees):
     return f"{np.cos(half):.6f},0,0,{np.sin(half):.6f}"
 
 
-def test_a_pass_far_away_is_laid_on_from_its_start(apart, capsys):
+def test_a_pass_far_away_is_laid_on_from_its_start(apart):
     points, files, folder = apart
     out = str(folder / "out")
-    assert run(["merge", *files, "--out", out]) == 2
-    assert "overlap" in capsys.readouterr().err
     start = f"6.004,0.497,0.203,{quaternion(91)}"
     assert run(["merge", *files, "--out", out, "--start", start]) == 0
     found = Project(folder / "out").load_cloud().points
     second = found[len(points) :]
     # The surfaces are the same points; the start is 5 mm and a degree off.
     assert np.linalg.norm(second - points, axis=1).max() < 2e-4
-    assert np.linalg.norm(found[: len(points)] - points, axis=1).max() < 1e-9
+    assert np.linalg.norm(found[: len(points)] - points, axis=1).max() < 2e-7  # seven digits
 
 
 @pytest.mark.parametrize(
