@@ -134,3 +134,9 @@ def test_a_sender_that_begins_anew_goes_on_where_it_stopped():
     timeline = StreamTimes()
     placed = [timeline.place(time, None)[0] for time in (100.0, 100.04, 100.08, 0.0, 0.04)]
     assert placed == [0, 40, 80, 120, 160]
+
+
+def test_a_file_that_describes_no_stream_is_told_so(tmp_path):
+    (tmp_path / "camera.sdp").write_text("this is no description\n")
+    with pytest.raises(DeviceError, match=r"camera\.sdp is no description of a stream"):
+        list(copy_stream(str(tmp_path / "camera.sdp"), tmp_path / "dive.mkv", timeout=1.0))

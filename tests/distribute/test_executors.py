@@ -123,3 +123,13 @@ def test_without_the_extra_the_install_line_is_said():
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert 'pip install "murkscan[cluster]"' in said.stdout
     assert issubclass(MissingDependency, ImportError)
+
+
+def tell_niceness(_):
+    return os.getpriority(os.PRIO_PROCESS, 0)
+
+
+@pytest.mark.skipif(not hasattr(os, "getpriority"), reason="the system has no niceness")
+def test_processes_give_way_as_much_as_they_are_told_to():
+    here = tell_niceness(None)
+    assert list(Processes(1, niceness=3).map(tell_niceness, [None])) == [min(here + 3, 19)]

@@ -1,6 +1,7 @@
 """The studio as its users meet it: in a browser, by clicks and keys alone."""
 
 import re
+import signal
 import subprocess
 import sys
 from contextlib import contextmanager
@@ -160,6 +161,10 @@ def test_pages_fit_a_phone_and_show_names_as_they_are(opened, folder, name):
 
 def test_a_studio_that_is_gone_is_told_of_and_its_page_goes_on_when_it_is_back(opened, folder):
     page, _, process = opened
+    process.send_signal(signal.SIGSTOP)  # as a laptop that sleeps
+    page.locator("#gone").wait_for(timeout=PATIENCE)
+    process.send_signal(signal.SIGCONT)
+    page.locator("#gone").wait_for(state="hidden", timeout=PATIENCE)
     process.kill()
     process.wait()
     page.locator("#gone").wait_for(timeout=PATIENCE)

@@ -151,6 +151,29 @@ class Dreadful(AbstractExtractor):
             yield from ()
 
 
+class Slow(GrayGravity):
+    """Takes longer for a frame than the frame lasts."""
+
+    def extract(self, frames, rig, background, *, laser=0):
+        for stripe in super().extract(frames, rig, background, laser=laser):
+            time.sleep(0.08)
+            yield stripe
+
+
+def test_a_replay_waits_for_who_cannot_follow_and_a_disk_that_fills_is_told(tmp_path, recording):
+    told = []
+    settings = _settings(
+        extractor=Slow(), move=_no_scan, find_room=lambda folder: 1_500_000_000
+    )  # fmt: skip
+    with pytest.raises(Scanned):
+        run_live(str(recording), stream_rig(), settings, out=tmp_path / "dive", tell=told.append)
+    shown = told[-1].preview
+    assert shown.dropped == 0
+    # The first dozen are what it learns from.
+    assert shown.frames >= NUM_PICTURES - 12
+    assert told[-1].warnings == ("The disk is nearly full: 1.5 GB left; make room.",)
+
+
 @pytest.mark.parametrize("extractor", [GrayGravity(), Dreadful()])
 def test_every_picture_of_a_stream_is_recorded_whatever_the_scanning_does(tmp_path, extractor):
     port, told = free_port(), []

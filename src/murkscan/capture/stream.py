@@ -96,8 +96,9 @@ def _open(source: str, timeout: float) -> Any:
         stream.close()
         if not stream.streams.video or time.monotonic() > until:
             raise StreamLost(
-                f"{source} sends no video that can be understood within {timeout:g} s; check that "
-                "it is the address of the picture, and let the camera send keyframes more often."
+                f"No video that can be understood comes from {source} within {timeout:g} s; check "
+                "that it is the address of the picture, that the camera is sending to this machine "
+                "and this port, and let it send keyframes more often."
             )
 
 
@@ -112,6 +113,11 @@ def _look_once(source: str, timeout: float) -> Any:
 
 
 def _silence(source: str, timeout: float, error: Any) -> StreamLost:
+    if isinstance(error, av.error.InvalidDataError) and source.lower().endswith(".sdp"):
+        return StreamLost(
+            f"{source} is no description of a stream; save the SDP file that the camera offers, "
+            "which begins with v=0."
+        )
     why = "" if isinstance(error, av.error.ExitError) else f" ({error.strerror})"
     return StreamLost(
         f"No stream comes from {source} within {timeout:g} s{why}; check that the camera is "

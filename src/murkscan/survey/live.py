@@ -1,9 +1,10 @@
 """A dive: record it, show it while it goes on, and scan it when it is over."""
 
 import math
+import sys
 import threading
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -28,6 +29,9 @@ from .live_source import LiveSource, RecordedSource, ReplayedSource
 from .live_stage import TICK, LiveStage, ScanTeller, Tell
 from .progress import Progress, silent
 from .scan import scan
+
+_TURN = 5e-4
+"""Longest turn of a thread while another one waits [s]."""
 
 
 def run_live(
@@ -78,7 +82,7 @@ def run_live(
     )  # fmt: skip
     with project.hold():
         if not dive.is_over():
-            with settings.beside():
+            with settings.beside(), _switching_soon():
                 dive.go_on(tell, until)
         return dive.scan(rig_file, executor, progress)
 
@@ -191,6 +195,21 @@ class _Dive:
             learner=settings.learner,
             stale=STALE if self.recording is None else math.inf,
         )  # fmt: skip
+
+
+@contextmanager
+def _switching_soon() -> Iterator[None]:
+    """Let threads take turns quickly.
+
+    The finding leaves Python's lock some twenty times a frame; where a thread that draws had it for
+    the usual 5 ms each time, a frame would take longer than it lasts.
+    """
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(_TURN)
+    try:
+        yield
+    finally:
+        sys.setswitchinterval(before)
 
 
 def _open(source: str, rig: Rig, fields: Fields) -> AbstractRecording | None:

@@ -30,6 +30,7 @@ export const addressOf = (name) => `files/${name.split("?")[0].split("/").map(en
   + (name.includes("?") ? `?${name.split("?").at(-1)}` : "");
 
 // What the folder holds and what runs: asked for each second, told to whoever listens.
+const PATIENCE = 5000;
 const listeners = new Set();
 export const studio = { state: null, isGone: false };
 
@@ -41,7 +42,8 @@ export function listen(listener) {
 
 export async function refresh() {
   try {
-    studio.state = await ask("api/folder");
+    // A server that is asleep takes the question, and never answers it.
+    studio.state = await ask("api/folder", { signal: AbortSignal.timeout(PATIENCE) });
     studio.isGone = false;
   } catch {
     studio.isGone = true;

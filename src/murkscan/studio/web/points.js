@@ -14,6 +14,9 @@ precision mediump float; in float shade; out vec4 colour;
 const vec3 stops[5] = vec3[5](vec3(.99,.91,.14), vec3(.37,.79,.38), vec3(.13,.57,.55), vec3(.23,.32,.55), vec3(.27,.05,.35));
 void main() { float at = shade * 3.999; int k = int(at); colour = vec4(mix(stops[k], stops[k + 1], at - float(k)), 1.0); }`;
 const ROW = 4, SAMPLE = 2000;
+// Points that are drawn at most, some for each pixel: an hour's dive would have millions, of which a page
+// without a graphics chip draws no ten a second.
+const MOST = 200_000;
 
 export function pointView(canvas) {
   const gl = canvas.getContext("webgl2", { antialias: false, preserveDrawingBuffer: false });
@@ -30,6 +33,7 @@ export function pointView(canvas) {
 
   function add(rows) {
     const added = rows.length / ROW;
+    while (count && count + added > MOST) thin();
     while ((count + added) * ROW > data.length) {
       const larger = new Float32Array(data.length * 2);
       larger.set(data);
@@ -48,6 +52,14 @@ export function pointView(canvas) {
     } else gl.bufferSubData(gl.ARRAY_BUFFER, count * ROW * 4, rows);
     count += added;
     draw();
+  }
+
+  // Every second point of those that are there goes: the oldest become the sparsest.
+  function thin() {
+    let kept = 0;
+    for (let i = 0; i < count; i += 2, kept += 1) data.copyWithin(kept * ROW, i * ROW, (i + 1) * ROW);
+    count = kept;
+    room = 0;
   }
 
   // Where most depths lie: a few strays would take the colours from all others.
