@@ -169,8 +169,8 @@ def test_a_replay_waits_for_who_cannot_follow_and_a_disk_that_fills_is_told(tmp_
         run_live(str(recording), stream_rig(), settings, out=tmp_path / "dive", tell=told.append)
     shown = told[-1].preview
     assert shown.dropped == 0
-    # The first dozen are what it learns from.
-    assert shown.frames >= NUM_PICTURES - 12
+    # The first dozen are what it learns from, and a few are under way by then.
+    assert shown.frames >= NUM_PICTURES - 16
     assert told[-1].warnings == ("The disk is nearly full: 1.5 GB left; make room.",)
 
 
