@@ -247,9 +247,14 @@ def figures_of(name: str, cases: list[Case]) -> list[Figure]:
 
 def counts_of(cases: dict[str, dict[str, list[Case]]]) -> str:
     """Say how many seeds of each were measured, which fewer than all are where time was short."""
-    counts = {name: len(some) for name, some in cases[DEFAULT].items()}
-    told = ", ".join(f"{count} seeds of {name}" for name, count in counts.items())
-    return f"{told} (of {SEEDS} each),"
+    fewest = min(len(some) for some in cases[DEFAULT].values())
+    if fewest == SEEDS:
+        return f"{SEEDS} seeds each,"
+    spread, share = 100 / (2 * fewest) ** 0.5, 100 * (0.05 * 0.95 / fewest) ** 0.5
+    return (
+        f"Stopped after {fewest} of {SEEDS} seeds each: a spread is known to {spread:.0f} %,\n"
+        f"a share of truths to {share:.0f} points: bars may be met and missed by chance. Scenes are"
+    )
 
 
 def main() -> None:
@@ -275,8 +280,8 @@ as much as they scatter, which is too narrow: neighbouring points err together, 
 than others since it joins them. The rig is exact here: its covariance would widen intervals by the
 common part.
 
-The means of the errors of spheres and cylinders are what the formulas for blur and thickness of
-the sheet leave ([measure](../measure.md)); the intervals hold them.""",
+The means of the errors of spheres and cylinders are what the formulas for the blur and for the
+thickness of the sheet leave ([measure](../measure.md)).""",
     )
 
 
