@@ -5,11 +5,12 @@ import json
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from murkscan.cli.main import run
 from murkscan.page import render_page
 from murkscan.project import MESH, MeshResult, Project
-from murkscan.report import Model
+from murkscan.report import ModelSize
 from murkscan.report.walls import wall_sections
 from murkscan.simulate.shapes import SheetPile
 from murkscan.survey.reported import digest_beside, tell_beside
@@ -54,8 +55,6 @@ def test_a_wall_is_drawn_tabled_and_mapped(wall, capsys):
 
 
 def test_the_map_opens_where_geotiff_does(wall):
-    from PIL import Image
-
     plane = ("--point-m", "0,0,0.6", "--normal", "0,0,-1", "--name", "map")
     assert run(["measure", str(wall), "wall", *plane, "--cell-mm", "50", "--sections", "0"]) == 0
     with Image.open(wall / "measure" / "map.tif") as map_:
@@ -89,9 +88,13 @@ def test_the_report_shows_walls_of_the_present_cloud(wall):
     project = Project(wall)
     assert "wall quay" in digest_beside(project)
     finish(project, MESH, MeshResult(0, 0))
-    told = tell_beside(project, Model(0, 0, 0, 0, None))
+    told = tell_beside(project, ModelSize(0, 0, 0, 0, None))
     (quay,) = (one for one in told.walls if one.name == "quay")
     assert quay.anomalies[0]["distance_mm"] > 20
+    assert quay.pictures == ["quay-1.png"]
+    with Image.open(wall / "measure" / "quay-1.png") as picture:
+        assert np.asarray(picture).std() > 10  # something is drawn
     page = render_page("Report", wall_sections([quay]))
     assert "Wall in elevation: quay" in page
     assert "../measure/quay.png" in page
+    assert "../measure/quay-1.png" in page

@@ -121,7 +121,7 @@ def dents(
         selection=part.select(),
     )
     _print_dents(search)
-    endings = (".json", ".ply", ".csv", "-front.png", "-isometric.png")
+    endings = (".json", ".ply", ".csv", "-anomalies.csv", ".dxf", "-front.png", "-isometric.png")
     tell("made", *(str(out / "measure" / f"{name}{ending}") for ending in endings))
 
 

@@ -32,6 +32,7 @@ from .selection import Ball as Ball
 from .selection import Box as Box
 from .selection import Selection as Selection
 from .step import measure_step as measure_step
+from .wall_drawing import draw_anomaly as draw_anomaly
 from .wall_drawing import draw_wall as draw_wall
 from .wall_map import Anomaly as Anomaly
 from .wall_map import WallMap as WallMap

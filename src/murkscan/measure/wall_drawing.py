@@ -12,6 +12,7 @@ from .wall_map import Anomaly, WallMap
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.image import AxesImage
 
 _INK, _MARK, _CURVE = "#202428", "#7b3294", "#2166ac"
@@ -60,9 +61,34 @@ def draw_wall(
         beside.tick_params(labelsize=7, labelleft=number == 0)
     title = f"{title}, 1 : {sheet.scale} at {_DPI} dots an inch"
     figure.suptitle(title, size=11, color=_INK)
+    return _as_picture(canvas), sheet.scale
+
+
+def _as_picture(canvas: "FigureCanvasAgg") -> ColourImage:
     canvas.draw()  # type: ignore[no-untyped-call]
     picture = np.asarray(canvas.buffer_rgba())[..., :3]  # type: ignore[no-untyped-call]
-    return np.ascontiguousarray(picture), sheet.scale
+    return np.ascontiguousarray(picture)
+
+
+def draw_anomaly(wall: WallMap, anomaly: Anomaly, number: int, *, title: str) -> ColourImage:
+    """Draw the map around an anomaly, boxed and numbered.
+
+    Args:
+        wall: The whole map.
+        anomaly: What is shown.
+        number: Of the anomaly.
+        title: What stands above.
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(5.0, 4.0), dpi=_DPI, layout="constrained")
+    canvas = FigureCanvasAgg(figure)
+    axes = figure.add_subplot()
+    figure.colorbar(_draw_map(axes, wall.around(anomaly)), ax=axes, label="out of the wall [mm]")
+    _box(axes, number, anomaly)
+    figure.suptitle(title, size=11, color=_INK)
+    return _as_picture(canvas)
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,8 @@ _GAUSSIAN = 1.4826
 """Standard deviation of Gaussian noise as a multiple of its median absolute value."""
 _SURE = 4.0
 """Standard deviations of a cell below which a departure is chance."""
+_FEW_AROUND = 10
+"""Cells around an anomaly that are shown with it, at least."""
 _FEWEST = 4
 """Cells of an anomaly, at least."""
 
@@ -46,6 +48,20 @@ class WallMap:
             self.low[0] + (column + 0.5) * self.cell,
             self.low[1] + (row + 0.5) * self.cell,
         )
+
+    def around(self, anomaly: "Anomaly") -> "WallMap":
+        """Give the part around an anomaly: half its size to each side, ten cells at least."""
+        room = max(_FEW_AROUND * self.cell, max(anomaly.width, anomaly.rise) / 2)
+        first, last = [], []
+        sides = ((anomaly.height, anomaly.rise, 1), (anomaly.along, anomaly.width, 0))
+        for (middle, size, axis), count in zip(sides, self.values.shape, strict=True):
+            # Where it is farthest off may be anywhere in it.
+            low = (middle - size - room - self.low[axis]) / self.cell
+            high = (middle + size + room - self.low[axis]) / self.cell
+            first.append(int(np.clip(low, 0, count - 1)))
+            last.append(int(np.clip(np.ceil(high), first[-1] + 1, count)))
+        corner = (self.low[0] + first[1] * self.cell, self.low[1] + first[0] * self.cell)
+        return WallMap(self.values[first[0] : last[0], first[1] : last[1]], corner, self.cell)
 
     def without_profile(self) -> "WallMap":
         """Take off what repeats along the height: each column's median.

@@ -23,7 +23,7 @@ from ..measure import (
     sigma_of_points,
 )
 from ..measure.reference import Reference, check_unit, read_reference
-from ..project import Project, StageFiles, find_trajectory
+from ..project import Project, StageFiles, find_trajectory, load_georeference
 from ..types.dent import Dent
 from ..types.deviation import Deviation
 from ..types.measurement import Measurement
@@ -33,6 +33,7 @@ from ..types.trajectory import Trajectory
 from ..view.render import render
 from ..view.values import SignedValues
 from ..view.views import standard_views
+from .anomalies import save_dents
 from .measured import as_plain, keep_measurement, measuring
 from .sample import load_sample
 
@@ -144,8 +145,16 @@ def search_dents(
 
         def write(files: StageFiles) -> dict[str, object]:
             _save_points(files, sample, deviation)
-            _draw(files, find_trajectory(project), surface, sample, deviation)
-            return {}
+            trajectory = find_trajectory(project)
+            _draw(files, trajectory, surface, sample, deviation)
+            return save_dents(
+                files,
+                search.dents,
+                load_georeference(project),
+                surface=surface,
+                colours=SignedValues(sample.cloud.points, deviation.values),
+                view=next(view for view in standard_views(trajectory) if view.name == "front"),
+            )
 
         keep_measurement(project, name, _as_measurement(search, reference), write=write)
     return search

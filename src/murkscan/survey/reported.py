@@ -39,7 +39,7 @@ def tell_beside(project: Project, model: ModelSize) -> ModelSize:
         model,
         origin=project.finished(MESH).result.origin,
         placed=None if placed is None else _as_placed(placed.result),
-        walls=[_load_wall(project, name) for name, _ in _find_walls(project)],
+        walls=[wall for name, _ in _find_walls(project) if (wall := _load_wall(project, name))],
     )
 
 
@@ -59,10 +59,14 @@ def _find_walls(project: Project) -> Iterator[tuple[str, Finished[MeasureResult]
         name = file.name.removesuffix(_RECORD)
         with suppress(MissingResult):
             finished = project.finished(MEASURE, name)
-            if finished.result.kind == "wall":
+            if finished.result.kind in ("wall", "dents"):
                 yield name, finished
 
 
-def _load_wall(project: Project, name: str) -> DrawnWall:
+def _load_wall(project: Project, name: str) -> DrawnWall | None:
+    """Load a list of anomalies; None of dents that an earlier version found, which has none."""
     content = load_json(measurement_files(project, name).checked(f"{name}.json"))
-    return DrawnWall(name, content["details"]["anomalies"])
+    told = content["details"]
+    if "anomalies" not in told:
+        return None
+    return DrawnWall(name, told["anomalies"], told.get("pictures", []), kind=content["kind"])

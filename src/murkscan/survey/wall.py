@@ -17,6 +17,7 @@ from ..measure import (
     Sample,
     Selection,
     WallMap,
+    draw_anomaly,
     draw_wall,
     find_anomalies,
     find_deflection,
@@ -31,6 +32,7 @@ from ..types.measurement import Measurement
 from ..types.plane import Plane
 from ..types.quantity import Quantity
 from ..types.wall import WallFrame
+from .anomalies import MOST_PICTURES
 from .measured import keep_measurement, measuring
 from .sample import load_sample
 
@@ -105,7 +107,7 @@ def draw_elevation(
             with files.making(f"{name}.png") as path:
                 write_image(path, picture)
             _write_files(files, name, drawn)
-            return {}
+            return {"pictures": _draw_anomalies(files, name, drawn)}
 
         return keep_measurement(project, name, _tell(drawn, scale), write=write)
 
@@ -226,6 +228,17 @@ def _write_files(files: StageFiles, name: str, drawn: _Drawn) -> None:
     boxes = [(str(number), _box(one)) for number, (one, _) in enumerate(drawn.anomalies, 1)]
     with files.making(f"{name}.dxf") as path:
         save_wall_dxf(path, curves=curves, boxes=boxes)
+
+
+def _draw_anomalies(files: StageFiles, name: str, drawn: _Drawn) -> list[str]:
+    """Draw the map around each anomaly; gives the names of the pictures."""
+    names = []
+    for number, (one, _) in enumerate(drawn.anomalies[:MOST_PICTURES], 1):
+        picture = draw_anomaly(drawn.wall, one, number, title=f"{name}, anomaly {number}")
+        names.append(f"{name}-{number}.png")
+        with files.making(names[-1]) as path:
+            write_image(path, picture)
+    return names
 
 
 def _system(drawn: _Drawn) -> str:
