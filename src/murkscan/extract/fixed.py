@@ -29,6 +29,8 @@ standard deviations of the noise, which one in eight is 1.15 below, and such a s
 _SKIRT, _PLAIN, _LONE_PIXEL = 61, 0.1, 1.3
 """Pixels around a surface's stripe that its skirt brightens; share of white by which what lasts
 stands out so that no filter need tell; and how much brighter than its neighbours a hot pixel is."""
+_BLOCK = 32
+"""Pixels of scan lines that are looked at together over all frames: no more is held at once."""
 _ROUGH = 15
 """Pixels of the median that tells what surely stands out."""
 _HALF_MEAN = math.sqrt(2 / math.pi)
@@ -91,12 +93,18 @@ def _low_levels(
     Returns:
         The levels, and where they last: the darkest frames have them, too, as far as noise goes.
     """
+    low = np.empty(levels[0].shape, np.float32)
+    lasting = np.empty(levels[0].shape, bool)
     half, few = (len(levels) + 1) // 2, len(levels) // _FEW_DARK
-    stack = np.partition(np.stack(levels), (few, half - 1), axis=0)[:half]
-    mean = stack.mean(axis=0, dtype=np.float32)
-    scatter = np.sqrt(noise.variance(mean)).astype(np.float32)
-    low = mean + np.float32(_HALF_MEAN) * scatter
-    return low, low - stack[few] < _LASTING[0] * scatter + _LASTING[1] * low
+    for first in range(0, len(low), _BLOCK):
+        rows = slice(first, first + _BLOCK)
+        stack = np.partition(np.stack([one[rows] for one in levels]), (few, half - 1), axis=0)
+        mean = stack[:half].mean(axis=0, dtype=np.float32)
+        scatter = np.sqrt(noise.variance(mean)).astype(np.float32)
+        low[rows] = mean + np.float32(_HALF_MEAN) * scatter
+        missed = low[rows] - stack[few]
+        lasting[rows] = missed < _LASTING[0] * scatter + _LASTING[1] * low[rows]
+    return low, lasting
 
 
 def _find_overlay(

@@ -88,6 +88,8 @@ _FEW = 500
 
 _ENOUGH = 10_000_000
 """Pixels that tell the law as well as more would: those of 48 PAL fields."""
+_LEVELS = 1 << 16
+"""Grey levels of the deepest picture."""
 _LAGS = (1, 8)
 """Distances of the pixels whose differences are taken: neighbours, and those of other blocks."""
 _SMOOTHED = 2.0
@@ -139,12 +141,15 @@ def _learn_law(images: Pictures, white: float, lag: int) -> Noise:
 
 def _learn_white(images: Pictures) -> float:
     """Give the level that clipped pixels pile up at; the largest that there is where none do."""
-    levels = np.concatenate([image.ravel() for image in images])
-    top = int(levels.max())
-    at_top, below = np.sum(levels == top), np.sum((levels < top) & (levels >= top - 5)) / 5
+    counts = np.zeros(_LEVELS, int)
+    for image in images:
+        counts += np.bincount(image.ravel(), minlength=_LEVELS)
+    top = int(np.flatnonzero(counts)[-1])
+    at_top, below = counts[top], counts[max(top - 5, 0) : top].sum() / 5
     # Even pictures, such as a codec's black, pile up as well.
-    piled = at_top > max(50, 5 * below) and top > 2 * np.median(levels) + 10
-    return float(top if piled else np.iinfo(levels.dtype).max)
+    middle = int(np.searchsorted(np.cumsum(counts), 0.5 * counts.sum()))
+    piled = at_top > max(50, 5 * below) and top > 2 * middle + 10
+    return float(top if piled else np.iinfo(images[0].dtype).max)
 
 
 def _bends(image: Image, lag: int) -> tuple[Scalars, Scalars]:

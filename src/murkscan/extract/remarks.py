@@ -1,5 +1,6 @@
 """What is odd about a recording, in plain words with their cure."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -11,6 +12,7 @@ from ..types.frame import Frame
 from ..types.laser import Axis
 from ..types.stripe import Stripe
 from .glow import average_blocks, is_behind
+from .quantiles import quantiles
 from .scan_lines import ScanLines
 
 _LIT = 0.2
@@ -23,6 +25,8 @@ _MOVED = 0.25
 """Change of the glow's pattern, as a share of it, from which it lies elsewhere."""
 _SEEN = 1.5
 """Grey levels above the darkest from which glow is glow."""
+_MOST = 10_000
+"""Places that tell of the glow as well as more would: more than all of a PAL field."""
 _FEWEST = 200
 """Places that two frames must share to be compared."""
 
@@ -110,8 +114,14 @@ def _gather_glow(
     stack = stack[:, shown]
     if stack.size == 0:
         return stack
+    stack = stack[:, :: math.ceil(stack.shape[1] / _MOST)]
     stack = stack - np.nanmin(stack)
-    return stack[:, np.nanmedian(stack, axis=0) > _SEEN]
+    return stack[:, _medians(stack) > _SEEN]
+
+
+def _medians(levels: Levels) -> Scalars:
+    """Give each place's median over the frames that show it."""
+    return np.asarray(quantiles(levels, (0.5,))[0, 0])
 
 
 def _is_like(frame: Frame, frames: Sequence[Frame]) -> bool:
@@ -119,7 +129,7 @@ def _is_like(frame: Frame, frames: Sequence[Frame]) -> bool:
 
 
 def _about_glow(glow: Levels, indices: Sequence[int]) -> list[str]:
-    usual = np.nanmedian(glow, axis=0)
+    usual = _medians(glow)
     exposure = np.array([_shared_factor(one, usual) for one in glow])
     known = exposure[np.isfinite(exposure)]
     remarks = []
@@ -159,6 +169,6 @@ def _change(pattern: Levels, cut: int) -> float:
     shown = np.isfinite(pattern[:cut]).any(axis=0) & np.isfinite(pattern[cut:]).any(axis=0)
     if shown.sum() < _FEWEST:
         return float("nan")
-    before = np.nanmedian(pattern[:cut, shown], axis=0)
-    after = np.nanmedian(pattern[cut:, shown], axis=0)
+    before = _medians(pattern[:cut, shown])
+    after = _medians(pattern[cut:, shown])
     return float(np.median(np.abs(before - after)) / np.median(before + after) * 2)
