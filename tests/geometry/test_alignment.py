@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
 
 from murkscan.errors import Degenerate, InputError, NotEnoughData
@@ -161,36 +160,11 @@ def test_the_stated_deviation_holds_errors_that_whole_profiles_share(axis, surfa
     assert np.mean(covered) > 0.85
 
 
-@pytest.mark.parametrize("axis", [0, 1], ids=["profiles", "scan lines"])
-def test_the_stated_deviation_holds_errors_that_drift(axis):
-    """Strips go together over 40 mm, a tenth of the surface and more than a twelfth."""
-    covered, ratios = [], []
-    for seed in range(20, 30):
-        random = np.random.default_rng(seed)
-        source, target = (
-            shaken(sample(plane, random, aside=aside, noise=1e-4, count=4000), axis, random, 0.02)
-            for aside in (0.15, 0)
-        )
-        found = align_clouds(source, target)
-        there = moved(sample(plane, random, aside=0.15, noise=0.0, count=200), found.correction)
-        sigma = found.sigma_along(there.points, there.normals.astype(float))
-        errors = height_above(plane, there.points)
-        covered.append(np.abs(errors) < 1.96 * sigma)
-        ratios.append((np.mean(sigma**2), np.mean(errors**2)))
-    # 10 alignments of three numbers each: a share of 95 % is met to about 7 % (1σ).
-    assert np.mean(covered) > 0.85
-    stated, seen = np.sqrt(np.mean(ratios, axis=0))
-    assert stated < 2 * seen
-
-
-def shaken(cloud, axis, random, drift=0.0):
-    """Move strips of a cloud along its normals, together over a length [m], 1σ."""
+def shaken(cloud, axis, random):
+    """Move strips of a cloud along its normals."""
     strip = np.floor((cloud.points[:, axis] + 1) / 0.005).astype(int)
-    off = random.normal(0, NOISE, 400)
-    if drift:
-        off = gaussian_filter1d(off, drift / 0.005)
-        off *= NOISE / off.std()
-    return as_cloud(cloud.points + cloud.normals * off[strip][:, None], cloud.normals)
+    off = random.normal(0, NOISE, 400)[strip]
+    return as_cloud(cloud.points + cloud.normals * off[:, None], cloud.normals)
 
 
 def test_a_rough_start_is_taken_into_account():

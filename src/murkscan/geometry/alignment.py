@@ -135,10 +135,9 @@ def align_surfaces(
 
     Generalised ICP finds the place. From there least squares of the distances along the normals,
     on the pairs that agree, refine it, moving nothing along directions that the overlap does not
-    show. The covariance is the largest of that of 64 pieces of the overlap and
-    those of 12 slabs across it, in 8 directions, each of which may err as a whole; slabs are
-    thicker, down to four, where the residuals go together farther. Errors that reach farther than
-    that, of a wrong calibration say, are not in it.
+    show. The covariance is the larger of that of 64 pieces of the overlap and
+    those of 12 slabs across it, in 8 directions, each of which may err as a whole: errors that
+    reach farther than a slab, of a wrong calibration say, are not in it.
 
     Args:
         source: The surface that moves.

@@ -39,11 +39,6 @@ _BLOCKS = 64
 """Pieces of the overlap that may be independent of one another."""
 _SLABS = 12
 """The same for slabs that reach across all of it."""
-_FINE, _FEWEST_SLABS = 48, 4
-"""Thin slabs that tell how far errors go together, and how many thick ones are left at least: of
-fewer no spread can be told."""
-_CHANCE = 2.0
-"""Standard deviations of a correlation's noise up to which it is chance."""
 _DIRECTIONS = 8
 """Directions in which slabs are cut: profiles and scan lines may run any way."""
 _NORMAL_95 = 1.96
@@ -110,7 +105,7 @@ class AlignmentFit:
             motions[:, is_open],
             motions[:, ~is_open],
             information[~is_open],
-            _cut_all(pairs.points, pairs.residuals, pairs.weights),
+            _cut_all(pairs.points),
         )
 
     def step(self, pose: Pose, start: Pose) -> tuple[Pose, float]:
@@ -225,42 +220,20 @@ def _leave_out(
     return found * (stdtrit(max(count - 1, 1), 0.975) / _NORMAL_95) ** 2
 
 
-def _cut_all(points: Points, residuals: Scalars, weights: Scalars) -> tuple[Indices, ...]:
+def _cut_all(points: Points) -> tuple[Indices, ...]:
     """Cut a surface into pieces, and into slabs across it in several directions.
 
     Errors of a finder may reach along a scan line over all of a pass, those of a log over a whole
-    profile, and from each to the next ones: where they go together farther than a part of a slab,
-    thicker slabs are another cut.
+    profile, and from each to the next ones.
     """
     off = points - points.mean(axis=0)
     first, second = np.linalg.eigh(off.T @ off)[1][:, :0:-1].T
-    cuts = [_cut(points)]
+    slabs = []
     for angle in np.arange(_DIRECTIONS) * (np.pi / _DIRECTIONS):
         along = off @ (np.cos(angle) * first + np.sin(angle) * second)
         share = (along - along.min()) / max(float(np.ptp(along)), 1e-300)
-        cuts.append(_slice(share, _SLABS))
-        reach = _find_reach(_slice(share, _FINE), residuals, weights)
-        if reach:
-            count = int(_FINE / (_FINE / _SLABS + reach))
-            cuts.append(_slice(share, max(count, _FEWEST_SLABS)))
-    return tuple(cuts)
-
-
-def _slice(share: Scalars, count: int) -> Indices:
-    """Number the slabs of equal thickness in which places between 0 and 1 lie."""
-    return np.minimum((count * share).astype(np.int64), count - 1)
-
-
-def _find_reach(slab: Indices, residuals: Scalars, weights: Scalars) -> int:
-    """Give over how many thin slabs their mean residuals go together."""
-    total = np.bincount(slab, weights, _FINE)
-    means = np.bincount(slab, weights * residuals, _FINE) / np.maximum(total, 1e-300)
-    variance = max(float(np.mean(means**2)), 1e-300)
-    for lag in range(1, _FINE // 4):
-        correlation = float(np.mean(means[lag:] * means[:-lag])) / variance
-        if correlation < _CHANCE / np.sqrt(_FINE - lag):
-            return lag - 1
-    return _FINE // 4
+        slabs.append(np.minimum((_SLABS * share).astype(np.int64), _SLABS - 1))
+    return (_cut(points), *slabs)
 
 
 def _cut(points: Points) -> Indices:
