@@ -312,9 +312,13 @@ def _lay_finely(
     """Pair facets anew after each step, until nothing moves; within passes alone or all."""
     groups: list[Ties] = []
     for number in range(rounds):
-        sides = [make_side(make_facets(leg, state.paths[leg.number])) for leg in legs]
+        sides = [
+            make_side(make_facets(leg, path), path)
+            for leg in legs
+            for path in [state.paths[leg.number]]
+        ]
         reach = max(8e-3 / 2**number, 1e-3)
-        most = settings.ties if number < rounds - _FULL or within else _ALL
+        most = settings.ties if number < rounds - _FULL else _ALL
         groups = [
             pair_facets(
                 sides[i],

@@ -143,29 +143,25 @@ class Log:
     def _assumed(
         self, path: Path, errors: Float[np.ndarray, " u"], settings: AdjustSettings
     ) -> list[Equations]:
-        """Stand in for instruments that a vehicle does not have.
-
-        A quantity that wanders enters as white noise that is as strong at low frequencies: between
-        samples dt apart, σ² = 2·s²·τ/dt for a wander of s over a time τ (an Ornstein-Uhlenbeck
-        process' spectrum at frequency 0). It leaves fast motion freer than the wander itself does.
-        """
+        """Stand in for instruments that a vehicle does not have."""
         log, parts = self.navigation, []
         times = np.arange(path.knots.start, path.knots.end, _SAMPLE)
-        widen = float(np.sqrt(2 * settings.wander_time / _SAMPLE))
         if log.speed is not None:
-            sigma = widen * settings.speed_wander * abs(log.speed)
+            wander = settings.speed_wander * abs(log.speed)
             factor = self.layout.shared(self.number, "speed_factor")
             ahead = np.tile([log.speed, 0.0, 0.0], (len(times), 1))
             poses = path.at(times)
             residuals = Velocity().predict(path, poses) - ahead * (1 + errors[factor])
             slopes = Velocity().slopes(path, poses)
-            parts.append(self._plain(residuals, slopes, poses, sigma, [(factor, -ahead)]))
+            drifting = self._plain(residuals, slopes, poses, 1.0, [(factor, -ahead)])
+            parts.append(_wandering(drifting, len(times), wander, settings.wander_time))
         if log.accuracy.attitude_noise is None:
             poses = path.at(times)
             change = np.tile(np.eye(3), (len(times), 1, 1))
             turns = evaluate(path.knots, path.turns, times)
-            sigma = widen * settings.attitude_wander
-            parts.append(self._plain(turns, slopes_of_turn(poses, change), poses, sigma, []))
+            drifting = self._plain(turns, slopes_of_turn(poses, change), poses, 1.0, [])
+            wander = settings.attitude_wander
+            parts.append(_wandering(drifting, len(times), wander, settings.wander_time))
         if log.position is None or log.accuracy.position_noise is None:
             knows_depth = log.depth is not None and log.accuracy.depth_noise is not None
             place = Place((0, 1) if knows_depth else (0, 1, 2))
@@ -208,6 +204,29 @@ class Log:
             *((self.layout.shared(self.number, name), s) for name, s in shared.items()),
             *((self.layout.own(self.number, name), s) for name, s in own.items()),
         ]
+
+
+def _wandering(raw: Equations, count: int, wander: float, period: float) -> Equations:
+    """Make readings of what wanders about a known value independent of one another.
+
+    An Ornstein-Uhlenbeck process keeps the share ρ = exp(-dt/τ) of itself from one sample to the
+    next, and what it gains in between is independent, of variance s²·(1 - ρ²).
+
+    Args:
+        raw: Its readings, three at each time, `_SAMPLE` apart.
+        count: Of times.
+        wander: Its standard deviation s.
+        period: Time τ over which it goes together with itself [s].
+
+    References:
+        Uhlenbeck and Ornstein, On the theory of the Brownian motion, Physical Review 36, 1930.
+    """
+    share = float(np.exp(-_SAMPLE / period))
+    gained = np.full(count, wander * np.sqrt(1 - share**2))
+    gained[0] = wander
+    steps = sparse.eye_array(count) - share * sparse.eye_array(count, k=-1)
+    whiten = sparse.kron(sparse.diags(1 / gained) @ steps, sparse.eye_array(3)).tocsr()
+    return Equations(whiten @ raw.residuals, sparse.csr_matrix(whiten @ raw.jacobian))
 
 
 def prior_equations(logs: Sequence[Log], unknowns: Float[np.ndarray, " u"]) -> Equations:

@@ -3,11 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool
+from jaxtyping import Bool, Float
 from scipy.spatial import cKDTree
 
-from ...types.arrays import Directions, Indices, Scalars
+from ...types.arrays import Directions, Indices, Mask, Points, Scalars
 from .legs import Facets
+from .path import Path
 from .ties import Ties
 from .tiles import make_heights
 
@@ -20,6 +21,8 @@ _AGREE = 0.8
 _BEYOND = 1.0
 """Cells by which the nearest facet may lie aside; beyond that the leg's rim has been passed."""
 _GOLDEN = (5**0.5 - 1) / 2
+_SLOWEST = 0.01
+"""Speed of a line over the surface below which it is not known where it was when [m/s]."""
 _CERTAIN = 2.0
 """How many times over the noise of normals a slope must stand to count."""
 
@@ -36,13 +39,61 @@ class Side:
     """Mean normals of patches: what counts where bumps may not be those of the other leg."""
     relief: float
     """Variance of the bumps that these leave [m²]."""
+    path: Path
+    """Where the leg lies."""
+    delays: Float[np.ndarray, "r 3"]
+    """How much later the leg saw what lies aside of each row [s/m], in the world."""
+
+    def at_places(self, which: Indices, aside: Directions) -> tuple[Scalars, Points]:
+        """Give when the leg saw what lies aside of some facets, and where its vehicle saw it.
+
+        A place that both legs have seen is one place only if it is the same for both: were a
+        facet's middle taken for what lies millimetres aside of it, a way whose errors go on from
+        one leg to the other would seem to be seen, by its slope over those millimetres.
+
+        Args:
+            which: Facets.
+            aside: From their middles, along the surface, in the world [m].
+        """
+        rows = self.facets.row[which]
+        later = np.einsum("ni,ni->n", self.delays[rows], aside)
+        knots = self.path.knots
+        times = np.clip(self.facets.leg.row_times[rows] + later, knots.start, knots.end)
+        poses = self.path.at(times)
+        places = self.facets.points[which] + aside
+        return times, np.einsum("nji,nj->ni", poses.rotations, places - poses.positions)
 
 
-def make_side(facets: Facets) -> Side:
-    """Make a leg's facets ready to be paired."""
+def make_side(facets: Facets, path: Path) -> Side:
+    """Make a leg's facets ready to be paired, where its path lies."""
     directions, smooth = steady_normals(facets)
     heights = make_heights(facets)
-    return Side(facets, cKDTree(facets.points), directions, smooth, float(np.var(heights)))
+    relief = float(np.var(heights))
+    tree = cKDTree(facets.points)
+    return Side(facets, tree, directions, smooth, relief, path, _delays(facets))
+
+
+def _delays(facets: Facets) -> Float[np.ndarray, "r 3"]:
+    """Give how time goes on across each row of a leg [s/m]: not at all along its line."""
+    leg, rows = facets.leg, len(facets.leg.row_times)
+    held = np.maximum(np.bincount(facets.row, minlength=rows), 1)[:, None]
+
+    def total(values: Float[np.ndarray, "n d"]) -> Float[np.ndarray, "r d"]:
+        return np.stack([np.bincount(facets.row, v, minlength=rows) for v in values.T], axis=1)
+
+    centre, column = total(facets.points) / held, total(facets.column[:, None] * 1.0) / held
+    off = (facets.column - column[facets.row, 0])[:, None]
+    along = total(off * (facets.points - centre[facets.row]))
+    along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-12)
+    there = np.flatnonzero(np.bincount(facets.row, minlength=rows) > 1)
+    delays = np.zeros((rows, 3))
+    if len(there) < 3:
+        return delays
+    speed = np.gradient(centre[there], leg.row_times[there], axis=0)
+    across = speed - np.einsum("ni,ni->n", speed, along[there])[:, None] * along[there]
+    square = np.einsum("ni,ni->n", across, across)[:, None]
+    delays[there] = across / np.maximum(square, _SLOWEST**2)
+    return delays
 
 
 def steady_normals(facets: Facets) -> tuple[Directions, Directions]:
@@ -123,21 +174,34 @@ def _tie(
     aside = between - off[:, None] * direction
     lateral = np.linalg.norm(aside, axis=1)
     kept = (length > 2 * _AGREE) & (np.abs(off) < reach) & (lateral < _BEYOND * size)
+    kept &= _are_inner(one)[first] & _are_inner(two)[second]
     first, second, aside, match = first[kept], second[kept], aside[kept], match[kept]
     variance = _variance(one, first, aside) + _variance(two, second, aside)
     variance = variance + np.where(match, 0.0, a.relief + b.relief)
     count = len(first)
+    times, own = b.at_places(second, aside)
     return Ties(
         np.full(count, one.leg.number),
         one.leg.row_times[one.row[first]],
         one.own[first],
         np.full(count, two.leg.number),
-        two.leg.row_times[two.row[second]],
-        two.own[second],
+        times,
+        own,
         direction[kept],
         np.zeros(count),
         variance,
     )
+
+
+def _are_inner(facets: Facets) -> Mask:
+    """Tell which facets have neighbours on all sides.
+
+    A rim's plane has a slope that errs with the height of its middle, which looks like a shift.
+    """
+    inner = np.ones(len(facets), bool)
+    for number in (facets.row, facets.column):
+        inner &= (number > number.min(initial=1 << 30)) & (number < number.max(initial=0))
+    return inner
 
 
 def _variance(facets: Facets, which: Indices, aside: Directions) -> Scalars:

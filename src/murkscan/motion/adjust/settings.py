@@ -36,9 +36,9 @@ class AdjustSettings:
     cycles: int = 5
     """How often tiles are looked for anew after facets have been paired, at most: what lies right
     shows where its neighbours belong."""
-    fine_rounds: int = 10
-    """How often facets are paired, at most."""
-    inner_rounds: int = 6
+    fine_rounds: int = 6
+    """How often facets are paired, at most: from 8 mm apart down to 1 mm, and twice more."""
+    inner_rounds: int = 5
     """How often facets are paired within passes before passes are looked for in one another."""
     ties: int = 10_000
     """Pairs of facets between two legs, at most: more add little and cost time."""
