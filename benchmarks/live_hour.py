@@ -99,9 +99,9 @@ def _replay(root: Path, count: int) -> list[Figure]:
         browser.close()
     return [
         Figure("the program, resident at the end", _end(server), "MB", at_most=900.0),
-        Figure("it grows by", _end(server) - _quarter(server), "MB", at_most=50.0),
+        Figure("the program grows by", _end(server) - _quarter(server), "MB", at_most=50.0),
         Figure("the page, resident at the end", _end(shown), "MB", at_most=600.0),
-        Figure("it grows by", _end(shown) - _quarter(shown), "MB", at_most=100.0),
+        Figure("the page grows by", _end(shown) - _quarter(shown), "MB", at_most=100.0),
         Figure("the page's frame", 1e3 * frame, "ms", at_most=100.0),
     ]
 
