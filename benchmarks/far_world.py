@@ -33,7 +33,7 @@ NOTE = """
 One simulated recording of a ship model's hull is scanned three times: with its poses as they are,
 with 432 km east, 5 412 km north and 12 m below added to them, and with 0.123, 0.678 and 0.345 m
 more. What is written is read again; origins that files state are added. "moved" is the largest
-difference of any coordinate beside the shift; LAS counts in steps of 1 µm from a whole metre. The
+difference of any coordinate beside the shift; LAS counts in steps of 0.5 µm from a whole metre. The
 page's places are rounded by
 design, to the step below.
 """

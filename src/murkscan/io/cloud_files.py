@@ -39,7 +39,7 @@ def writing_cloud_file(path: Path, *, wkt: str = "", extent: float = np.inf) -> 
         path: The file; its suffix is one of .ply, .las, .laz, .e57, .xyz and .csv.
         wkt: Coordinate system as well-known text, which LAS, LAZ and E57 keep; empty for none.
         extent: Size of the cloud along its longest edge, at most [m]: LAS and LAZ count in finer
-            steps where it is below 2 km.
+            steps where it is below 1 km.
 
     Raises:
         InputError: The suffix is another.

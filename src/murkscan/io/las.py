@@ -18,11 +18,11 @@ from .laz_chunks import check_laz_chunks
 if TYPE_CHECKING:
     pass
 
-_STEPS = (1e-6, 1e-5)
+_STEPS = (5e-7, 1e-5)
 """Steps of the coordinates [m]: the second, a tenth of the noise of the best points, where the
 points' extent has no room for the first, by which a cloud elsewhere is the same to a micrometre."""
-_ROOM = 2000.0
-"""Extent up to which the first is taken [m]; 2³¹ of them are 2147 m."""
+_ROOM = 1000.0
+"""Extent up to which the first is taken [m]; 2³¹ of them are 1074 m."""
 _EXTRA = [name for name in COLUMNS.names or () if name not in "xyz"]
 _BRIGHTEST = 65535
 _POINT_FORMAT = 6
@@ -34,8 +34,8 @@ def writing_las(
 ) -> Iterator[Callable[[PointCloud], None]]:
     """Write a cloud block by block, packed where the suffix is .laz.
 
-    Coordinates are in metres, in steps of 0.001 mm from the whole metre next to the first points;
-    of 0.01 mm where the cloud extends over more than 2 km.
+    Coordinates are in metres, in steps of 0.0005 mm from the whole metre next to the first points;
+    of 0.01 mm where the cloud extends over more than 1 km.
     What LAS has no field for are extra dimensions with the names of cloud.ply's columns; `signal`
     is the intensity, too. The file appears whole when the context ends, or not at all.
 
