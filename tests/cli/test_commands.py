@@ -116,7 +116,7 @@ def test_a_rig_without_a_laser_says_what_to_run(short, tmp_path, capfd):
 def test_a_stage_without_the_one_before_names_it(short, tmp_path, capfd):
     out = tmp_path / "out"
     assert run(["triangulate", str(out)]) == 2
-    assert "holds no scan" in capfd.readouterr().err
+    assert f"no folder {out}" in capfd.readouterr().err
     assert run(["extract", *_arguments(short, "--out", str(out))]) == 0
     assert run(["cloud", str(out)]) == 2
     assert "`murkscan triangulate`" in capfd.readouterr().err

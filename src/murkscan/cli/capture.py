@@ -70,9 +70,13 @@ def _start(
         return copy_stream(source, out, seconds=seconds, timeout=timeout)
     if is_camera(source):
         return record_images(camera_images(source), out, seconds=seconds)
+    if Path(source).exists():
+        raise InputError(
+            f"{source} lies here already, and is no stream: murkscan scan reads recordings itself."
+        )
     raise InputError(
         f"{source} is no stream and no camera; give an address such as udp://0.0.0.0:5600, an SDP "
-        "file, or a camera's number. A video that is a file already can be scanned as it is."
+        "file, or a camera's number. No file of that name is here either."
     )
 
 

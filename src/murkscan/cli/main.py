@@ -5,7 +5,7 @@ import shutil
 import sys
 import traceback
 
-from cyclopts import App, CycloptsError
+from cyclopts import App, CoercionError, CycloptsError, MissingArgumentError
 
 from ..errors import MurkscanError
 from .typed import WORDS
@@ -88,8 +88,8 @@ def run(arguments: list[str]) -> int:
         return _say(str(error), 2)
     except CycloptsError as error:
         # Where we found the fault ourselves while the words were read, our own sentence says it.
-        ours = error.__cause__ if isinstance(error.__cause__, MurkscanError) else error
-        return _say(str(ours), 2)
+        ours = isinstance(error.__cause__, MurkscanError)
+        return _say(str(error.__cause__) if ours else _in_our_words(error), 2)
     except KeyboardInterrupt:
         return _say("stopped; what is finished is kept. Run the same command again.", 130)
     except OSError as error:
@@ -98,6 +98,20 @@ def run(arguments: list[str]) -> int:
         traceback.print_exc()
         return _say("this is a fault of murkscan; please report it with the lines above.", 1)
     return 0
+
+
+def _in_our_words(error: CycloptsError) -> str:
+    """Say what is wrong with the words, without those of a programmer."""
+    if isinstance(error, CoercionError) and error.token and error.target_type in (int, float):
+        kind = "whole number" if error.target_type is int else "number"
+        name = error.token.keyword or (error.argument.name if error.argument else "It")
+        return f'{name} takes a {kind} and nothing behind it, got "{error.token.value}".'
+    if isinstance(error, MissingArgumentError) and error.command_chain and error.argument:
+        command = " ".join(("murkscan", *error.command_chain))
+        name, is_first = error.argument.name, error.argument.index is not None
+        wanted = name.lstrip("-").upper() if is_first else name
+        return f"{command} needs {wanted}; {command} --help says what that is."
+    return str(error)
 
 
 def _say(sentence: str, status: int) -> int:

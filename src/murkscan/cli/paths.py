@@ -35,6 +35,8 @@ def require_scan(_: object, path: Path | None) -> None:
     Raises:
         MissingResult: It is no scan's.
     """
+    if path is not None and not path.exists():
+        raise MissingResult(f"There is no folder {path}; check the spelling of the path.")
     if path is not None and not (path / "scan.json").exists():
         raise MissingResult(
             f"{path} holds no scan; run `murkscan scan` or `murkscan extract` into it first."

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from ..survey.progress import Progress
 
-_COMPILING = "compiling loops, once on this machine: some 20 s in all"
+_COMPILING = "making its loops fast, once on this machine: some 20 s in all where nothing else runs"
 
 
 @contextmanager
@@ -51,9 +51,11 @@ def progress_bars() -> Iterator["Progress"]:
                 tasks[stage] = bars.add_task(stage, total=total)
             bars.update(tasks[stage], completed=min(done, total or done), total=total)
 
-        with _telling_of_compilation(bars):
-            yield show
-        bars.update(loading, visible=False)
+        try:
+            with _telling_of_compilation(bars):
+                yield show
+        finally:
+            bars.update(loading, visible=False)
         for task in bars.tasks:
             if task.total is None:  # nobody knew how many steps there would be; now it is known
                 bars.update(task.id, total=max(task.completed, 1), completed=max(task.completed, 1))

@@ -68,7 +68,8 @@ def turntable(
     tell(
         "next",
         f"murkscan scan RECORDING --rig RIG --poses {quote(str(out))}{flags} --out OUT "
-        "--volume-m X,Y,Z,X,Y,Z, the volume above the table: so the wall behind is left out",
+        "--volume-m X,Y,Z,X,Y,Z",
+        "where --volume-m gives two corners of the space above the table, and leaves the wall out",
     )
 
 

@@ -125,8 +125,8 @@ class Project:
         record = read_record(file)
         if record is None or record.result is None:
             raise MissingResult(
-                f"{self.root} has no finished {word} stage; run `murkscan {word}` or "
-                "`murkscan scan` first."
+                f"{self.root} holds nothing that `murkscan {word}` has finished; run it, or "
+                "`murkscan scan`, first."
             )
         for source in STAGES:
             digest = record.key.inputs.get(source.word)

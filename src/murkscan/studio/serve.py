@@ -41,6 +41,8 @@ def serve(
             "machine, such as 192.168.2.1."
         )
     name = f"[{host}]" if ":" in host else host
+    if not folder.exists():
+        tell(f"{folder} is a new folder: there was none of that name.")
     sandbox = Sandbox.open(folder)
     with hold(sandbox.own(), ("studio", str(folder))), ExitStack() as stack:
         before, token = _recall(sandbox.own("address"))
