@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -14,6 +14,7 @@ from ..types.arrays import Indices, Mask, Scalars
 from ..types.background import Noise, StripeShape
 from .matched_filter import SKIRT
 from .plateaus import measure_at
+from .pull import Slants, undo_pull
 from .ridges import PLATEAU, Marks, Ridges
 from .scan_lines import ScanLines
 
@@ -22,9 +23,10 @@ _WIDTH_SPREAD, _SKIRT_SPREAD = 0.15, 0.1
 _REACH = 8.0
 """Scan lines over which centres are joined."""
 _ROUGH = 0.04
-"""Roughness of a surface from scan line to scan line, as far as nothing shows more [px]."""
-_INNER, _APART = 3, 4.0
-"""Scan lines from a stripe's end to where it is as bright as it is, and pixels a line that part."""
+"""Most roughness of a surface from scan line to scan line, as far as nothing shows more [px]."""
+_DARK = 0.6
+"""E-folds by which an end is darker than the stripe, from which it is blur: 0.55 of its light, for
+the stripe's own grows a little towards its middle."""
 _CREDIBLE = 0.2
 """Share of the height that a ridge's score stands for, below which a fit has explained it away."""
 _BLUR = 0.2
@@ -46,6 +48,12 @@ class Centres:
     signal: Scalars
     """Height of the stripe above its surroundings [grey levels]."""
     posterior: Scalars
+    common: Scalars
+    """What all centres err by together where the blur errs by 1σ, with its sign [full-frame px]."""
+    length: Scalars
+    """Scan lines over which `sigma` is alike, so that it counts once in so many."""
+    rough: Scalars
+    """Roughness of the surface from scan line to scan line [full-frame px]."""
 
     def __len__(self) -> int:
         """Count the centres."""
@@ -53,8 +61,7 @@ class Centres:
 
     def __getitem__(self, which: Mask | Indices) -> "Centres":
         """Pick some of them."""
-        columns = (self.scan_line, self.position, self.sigma, self.signal, self.posterior)
-        return Centres(self.lines, *(column[which] for column in columns))
+        return Centres(self.lines, *(getattr(self, name)[which] for name in _COLUMNS))
 
     @property
     def index(self) -> int:
@@ -64,9 +71,11 @@ class Centres:
     @classmethod
     def concatenate(cls, parts: Sequence["Centres"]) -> "Centres":
         """Put centres of one frame one after another."""
-        names = ("scan_line", "position", "sigma", "signal", "posterior")
-        columns = (np.concatenate([getattr(part, name) for part in parts]) for name in names)
+        columns = (np.concatenate([getattr(part, name) for part in parts]) for name in _COLUMNS)
         return cls(parts[0].lines, *columns)
+
+
+_COLUMNS = tuple(field.name for field in fields(Centres) if field.name != "lines")
 
 
 @dataclass(frozen=True)
@@ -165,7 +174,14 @@ def _measure_white(
     middle, sigma, rise, _ = measure_at(lines, line, ridges.positions[line, which], noise).T
     whole = np.isfinite(middle)
     full, spread = lines.as_full_frame(middle), lines.stretch * sigma
-    return Centres(lines, line, full, spread, rise, posterior[line, which])[whole]
+    held, usual = posterior[line, which], _scatter_of(len(line), lines.stretch, None)
+    return Centres(lines, line, full, spread, rise, held, *usual)[whole]
+
+
+def _scatter_of(count: int, stretch: int, shape: StripeShape | None) -> tuple[Scalars, ...]:
+    """List what centres err by alike, over how many scan lines, and how rough their surface is."""
+    length, rough = (1.0, _ROUGH) if shape is None else (shape.length, stretch * shape.rough)
+    return tuple(np.full(count, each) for each in (0.0, length, min(rough, _ROUGH)))
 
 
 def _fit_one_width(
@@ -184,34 +200,40 @@ def _fit_one_width(
     spread = seen.stretch * np.hypot(shape.misfit * sigma, shape.floor)
     full = seen.as_full_frame(position)
     signal = np.clip(height * (1 + skirt), 0.0, noise.white)
-    centres = Centres(ridges.lines, line, full, spread, signal, posterior[line, which])[fits]
-    return doubt_ends(centres, width=seen.stretch * shape.width)
+    held, scatter = posterior[line, which], _scatter_of(len(line), seen.stretch, shape)
+    centres = Centres(ridges.lines, line, full, spread, signal, held, *scatter)[fits]
+    width = seen.stretch * shape.width
+    return _without_blur(centres, width=width, blur=shape.blur)
 
 
-def doubt_ends(centres: Centres, *, width: float) -> Centres:
-    """Lower the posterior where the lens carries a stripe beyond its end.
+def _without_blur(centres: Centres, *, width: float, blur: float) -> Centres:
+    """Put centres back to where the light of their own scan line lies, and doubt what has none.
 
-    There the last centre is surely much fainter than those further in.
+    Half of a line's light is left at its very end; where less is, the lens has carried it there.
 
     Args:
         centres: Of one frame, before they are joined.
         width: 1σ of the stripe [full-frame px].
+        blur: See `Slants.pull`.
     """
-    num_lines = centres.lines.num_lines + 2 * _INNER
-    place, signal = np.full(num_lines, np.nan), np.full(num_lines, np.nan)
-    at = centres.scan_line + _INNER
-    # Beside an occlusion a scan line has two, which are both no end.
-    alone = np.bincount(at, minlength=num_lines)[at] == 1
-    place[at], signal[at] = centres.position, centres.signal
     # A stripe's height is known as well, in proportion, as its place in units of its width.
-    most = centres.signal * (1 + 2 * centres.sigma / width)
-    is_blur = np.zeros(len(centres), bool)
-    for way in (-1, 1):
-        goes_on = np.abs(place[at + way] - centres.position) < _APART
-        inner = at - _INNER * way
-        belongs = np.abs(place[inner] - centres.position) < _INNER * _APART
-        is_blur |= alone & ~goes_on & belongs & (most < 0.5 * signal[inner])
-    return replace(centres, posterior=np.where(is_blur, _BLUR, 1.0) * centres.posterior)
+    spread = centres.sigma / width
+    slants = Slants.of(
+        centres.lines,
+        centres.scan_line,
+        centres.position,
+        light=centres.signal,
+        spread=spread,
+    )
+    added, noise, unknown = undo_pull(slants.pull(), blur).T
+    is_blur = slants.dark - spread > _DARK
+    return replace(
+        centres,
+        position=centres.position - added,
+        sigma=np.hypot(centres.sigma, noise),
+        posterior=np.where(is_blur, _BLUR, 1.0) * centres.posterior,
+        common=unknown,
+    )
 
 
 def join_frames(near: Mapping[int, Centres]) -> Centres:
@@ -241,11 +263,13 @@ def join_frames(near: Mapping[int, Centres]) -> Centres:
             ]
         ),
         np.concatenate([group.sigma for group in groups]),
+        np.concatenate([group.common for group in groups]),
+        np.concatenate([group.length for group in groups]),
+        np.concatenate([group.rough for group in groups]),
         starts,
         first,
         first + len(own),
         _REACH,
-        _ROUGH,
     )
     wall = own.lines.even_wall(own.scan_line.astype(float))
     return replace(own, position=wall + joined[:, 0], sigma=joined[:, 1])

@@ -33,6 +33,8 @@ _BLOCK = 32
 """Pixels of scan lines that are looked at together over all frames: no more is held at once."""
 _ROUGH = 15
 """Pixels of the median that tells what surely stands out."""
+_RIM = 0.5
+"""Widths from the picture's edge from which something may stand: nearer to it than any stripe."""
 _HALF_MEAN = math.sqrt(2 / math.pi)
 _OUT = 4.0
 """Standard deviations of the noise that is left from which something stands out."""
@@ -71,7 +73,8 @@ def _learn_levels(
 ) -> Levels:
     low, lasting = _low_levels([lines.levels for lines in group], bank.noise)
     base = replace(group[0], levels=low, signal=low)
-    low_bank = replace(bank, search=replace(bank.search, least=LEAST / 2))
+    # Along the picture's edge a filter sees what is fixed sooner than what a stripe may be.
+    low_bank = replace(bank, search=replace(bank.search, least=LEAST / 2, rim=_RIM))
     frames = [find_frame_ridges({0: low_bank.score(each)}, low_bank) for each in (base, *group)]
     standing = Standing.of(frames[0], frames[1:])
     is_surface = standing.are_surface(markov, lasers=lasers)

@@ -27,9 +27,6 @@ _NARROW = 0.3
 """Share of a wider filter's answer from which the narrower one tells where the stripe is. A stripe
 answers a filter of half its width with 0.27 of what its own gives and less; the skirt of a narrow
 one, scattered by murk, answers wide filters up to twice as much as the core its own."""
-_RIM = 1.5
-"""Widths from the picture's edge within which nothing shows on one side: no stripe is told from the
-picture's own rim there."""
 _BOUND = 2.0
 """Standard deviations by which a neighbouring frame may exceed a frame's own score, so that snow
 of that frame is none of this one's."""
@@ -260,7 +257,7 @@ def _find_one_width(
         total *= np.float32(1 / math.sqrt(len(near)))
         scores = np.maximum(total, scores)
     least, most = bank.search.least, bank.search.most
-    margin = min(_RIM * matched.width, (len(scores) - 3) / 2)
+    margin = min(bank.search.rim * matched.width, (len(scores) - 3) / 2)
     positions, heights, counts = find_ridges(scores, least, most, matched.reach, _LOBE, margin)
     return matched.binning * positions + 0.5 * (matched.binning - 1), heights, counts
 

@@ -13,8 +13,10 @@ from .centres import Tightness, fit_ridges
 from .clutter import learn_response_law
 from .markov import Markov
 from .matched_filter import FilterBank, MatchedFilter
+from .pull import Slants
 from .ridges import Ridges, find_frame_ridges, find_runs
 from .scan_lines import ScanLines
+from .scatter import ENOUGH, Bends, third_differences, weighted_median, with_scatter
 
 _BINNINGS = (1, 2, 4, 8, 16, 32)
 """Pixels averaged, to find a stripe of whatever width with one filter."""
@@ -35,18 +37,12 @@ _LONGER = 10.0
 """Times that a stripe is longer than 1σ of its width, at least, to be told from a round blur."""
 _CLEAR, _FEW, _SHARE = 8.0, 100, 0.01
 """Score from which a ridge tells of another width, and how many, and what share, must tell."""
+_BLURRED = 1.2
+"""Most blur along the stripe, in widths of the core at right angles to it: it has a skirt, too. On
+the hull it is 1.04 of them, and 1.18 where the stripe is rolled by 63° (benchmarks/murk.py, seed
+0)."""
 _SURE = 0.9
 """Posterior from which a ridge is learnt from."""
-_APART = 3
-"""Scan lines between centres that are compared: nearer ones share their noise."""
-_THIRD = np.array([-1.0, 3.0, -3.0, 1.0])
-"""Third difference of four centres: the slope and the bend of a smooth surface are none of it."""
-_JUMP = 1.3
-"""The same, scaled to the scatter of one centre, from which a surface jumps [px]."""
-_ONE_SIGMA = 0.6827
-"""Share of a Gaussian's values within one standard deviation."""
-_ENOUGH = 100
-"""Centres from which the shape is learnt, and from which three times as many its scatter."""
 
 
 def learn_stripe_shapes(
@@ -160,17 +156,21 @@ class _Learner:
         shapes = tuple(self._with_clutter(shape) for shape in shapes)
         learnt = []
         for fits, shape in zip(self._fit_all(shapes, Tightness(0.5, 0.3)), shapes, strict=True):
-            if len(fits) > _ENOUGH:
-                width = _weighted_median(fits.width, fits.trust)
-                skirt = _weighted_median(fits.skirt, fits.trust)
+            if len(fits) > ENOUGH:
+                width = weighted_median(fits.width, fits.trust)
+                skirt = weighted_median(fits.skirt, fits.trust)
                 shape = replace(shape, width=width, skirt=float(np.clip(skirt, 0.0, 0.5)))
             learnt.append(shape)
         fitted = self._fit_all(tuple(learnt), Tightness())
-        explained = [_explain(fits.bends) for fits in fitted]
         return tuple(
-            replace(shape, misfit=misfit, floor=floor)
-            for shape, (misfit, floor) in zip(learnt, explained, strict=True)
+            with_scatter(shape, fits.bends, widest=self._upright(shape))
+            for shape, fits in zip(learnt, fitted, strict=True)
         )
+
+    def _upright(self, shape: StripeShape) -> float:
+        """Compute the width at right angles to an even wall's stripe [px of the full frame]."""
+        lines = self.look[0].binned(shape.binning)
+        return _BLURRED * lines.stretch * shape.width / math.hypot(1.0, lines.slope)
 
     def _with_clutter(self, shape: StripeShape) -> StripeShape:
         """Learn how strongly a filter of this width answers what is no stripe."""
@@ -197,7 +197,7 @@ class _Learner:
         start = seen.from_image(ridges.positions[lines, which])
         noise = self.noise.averaged(shape.binning)
         found = fit_ridges(seen, lines, start, noise=noise, shape=shape, tightness=held)
-        return _Fits.of(lines, found, ridges.heights[lines, which])
+        return _Fits.of(seen, lines, found, ridges.heights[lines, which])
 
     def _bank(self, shapes: tuple[StripeShape, ...]) -> FilterBank:
         return FilterBank.of(shapes, self.noise, self.search)
@@ -219,19 +219,25 @@ class _Fits:
     width: Scalars
     skirt: Scalars
     trust: Scalars
-    bends: Float[np.ndarray, "m 2"]
-    """Third differences of centres: the standard deviation of each that noise explains, and it."""
+    bends: Bends
 
     def __len__(self) -> int:
         """Count the ridges."""
         return len(self.width)
 
     @classmethod
-    def of(cls, lines: Indices, found: Float[np.ndarray, "n 5"], height: Scalars) -> "_Fits":
+    def of(
+        cls, seen: ScanLines, lines: Indices, found: Float[np.ndarray, "n 5"], height: Scalars
+    ) -> "_Fits":
         """Take what fits; a score above 50 is trusted no more than 50."""
         fits = np.isfinite(found[:, 0])
         clear = fits & (height > 6.0)
-        bends = _third_differences(lines[clear], found[clear, 0], found[clear, 1])
+        centres, sigma, light, width, _ = found[clear].T
+        at, places = lines[clear], seen.as_full_frame(centres)
+        slants = Slants.of(seen, at, places, light=light, spread=sigma / width)
+        pull = slants.pull() / seen.stretch
+        straight = places - seen.even_wall(at.astype(float))
+        bends = third_differences(at, centres, straight, sigma, pull)
         trust = np.minimum(height[fits], 50.0) ** 2
         return cls(found[fits, 3], found[fits, 4], trust, bends)
 
@@ -266,44 +272,3 @@ def _half_crossing(side: Float[np.ndarray, "n reach"]) -> Scalars:
     above, under = side[every, first - 1], side[every, first]
     crossing = first - 1 + (above - 0.5) / np.maximum(above - under, 1e-9)
     return np.where(first > 0, crossing, np.nan)
-
-
-def _third_differences(
-    lines: Indices, centres: Scalars, sigma: Scalars
-) -> Float[np.ndarray, "m 2"]:
-    """Give how far centres should be off a parabola through others, and are, scaled to one centre.
-
-    Second differences would take the bend of a ball, which often is the surest, for scatter.
-    """
-    wanted = lines[:, None] + _APART * np.arange(len(_THIRD))
-    four = np.minimum(np.searchsorted(lines, wanted), len(lines) - 1)
-    four = four[(lines[four] == wanted).all(axis=1)]
-    expected, off = np.sqrt(sigma[four] ** 2 @ _THIRD**2), centres[four] @ _THIRD
-    scaled = np.stack([expected, off], axis=1) / np.linalg.norm(_THIRD)
-    return scaled[np.abs(scaled[:, 1]) < _JUMP]
-
-
-def _explain(bends: Float[np.ndarray, "m 2"]) -> tuple[float, float]:
-    """Give the factor and the floor with which 68 % of the differences are as expected.
-
-    The floor comes from the surest tenth, the factor from all that the floor does not rule.
-    """
-    if len(bends) <= 3 * _ENOUGH:
-        return 1.0, 0.0
-    bends = bends[np.argsort(bends[:, 0])]
-    surest = bends[: max(len(bends) // 10, _ENOUGH)]
-    seen = np.quantile(np.abs(surest[:, 1]), _ONE_SIGMA) ** 2
-    noise = np.median(surest[:, 0]) ** 2
-    # What is seen is itself known to 2.6 / √n of it: less than twice that says nothing.
-    floor = seen - noise if seen > (1.0 + 5.2 / math.sqrt(len(surest))) * noise else 0.0
-    rest = bends[bends[:, 0] ** 2 > 2.0 * floor]
-    if len(rest) < 3 * _ENOUGH:
-        return 1.1, float(np.sqrt(floor))
-    factor = np.quantile(np.abs(rest[:, 1]) / np.sqrt(rest[:, 0] ** 2 + floor), _ONE_SIGMA)
-    return float(np.clip(factor, 1.0, 3.0)), float(np.sqrt(floor))
-
-
-def _weighted_median(values: Scalars, weights: Scalars) -> float:
-    order = np.argsort(values)
-    total = np.cumsum(weights[order])
-    return float(values[order][np.searchsorted(total, 0.5 * total[-1])])

@@ -74,6 +74,14 @@ class StripeShape:
     clutter: Noise | None = None
     """Variance of a matched filter's answer where there is no stripe, by the level around it: noise
     and all that a picture has of this width beside; that of the noise alone unless given."""
+    blur: float = 0.0
+    """Variance of the blur along the stripe, by which brighter scan lines draw their neighbours'
+    centres where it slants [px² of the full frame]."""
+    length: float = 1.0
+    """Scan lines over which noise is alike, as an encoder's and speckle's is."""
+    rough: float = 1.0
+    """What a surface's roughness scatters centres by from scan line to scan line, at most, as far
+    as noise lets it be seen [px of the binned picture]."""
 
 
 @dataclass(frozen=True)
@@ -88,6 +96,9 @@ class Search:
     """Pixels that a filter sees on both sides beyond four widths of the stripe: the more, the less
     of a faint stripe is lost to the bend that filters are blind to, and the more glow and texture
     are taken for one."""
+    rim: float = 1.5
+    """Widths from the picture's edge within which nothing shows on one side: no stripe is told from
+    the picture's own rim there."""
 
 
 PLAIN = Search()
