@@ -74,32 +74,37 @@ def _join_one(
             break
         p[:] = right
         variance = first_variance(matrix)
-        variance = min(length * variance, max(variance, sigma[i] ** 2))
-        variance += _shared(matrix, near[:count], p, excess) ** 2
+        together, alone = _weigh_errors(matrix, near[:count], p, excess)
+        # What goes on over some lines is noise or the surface, and not both.
+        variance = max(variance, min(length * alone, sigma[i] ** 2)) + together**2
         if turn == 1:
             excess = max(misfits / max(weights, 1.0), 0.0)
     return centres[i] + p[0], np.sqrt(variance)
 
 
 @njit(cache=True, nogil=True)
-def _shared(root: np.ndarray, near: np.ndarray, p: np.ndarray, excess: float) -> float:
-    """Give by how much the joined centre errs where all neighbours err together."""
+def _weigh_errors(
+    root: np.ndarray, near: np.ndarray, p: np.ndarray, excess: float
+) -> tuple[float, float]:
+    """Give by how much the joined centre errs where all neighbours err together by `common`.
+
+    And the variance that their noise gives it where each errs by itself.
+    """
     answer, slopes = np.zeros(_SIZE), np.empty(_SIZE)
     answer[0] = slopes[0] = 1.0
     substitute(root, answer)
-    total = 0.0
+    together, alone = 0.0, 0.0
     for k in range(len(near)):
         along, later, off, noise, far, own, common = near[k]
-        if common == 0.0:
-            continue
         slopes[1], slopes[2], slopes[3], slopes[4] = along, later, along * along, later * later
         miss, share = off, 0.0
         for a in range(_SIZE):
             miss -= p[a] * slopes[a]
             share += answer[a] * slopes[a]
-        spread = noise + own + excess * far
-        total += share * common / (spread + 0.25 * miss * miss)
-    return total
+        share /= noise + own + excess * far + 0.25 * miss * miss
+        together += share * common
+        alone += share * share * noise
+    return together, alone
 
 
 @njit(cache=True, nogil=True)

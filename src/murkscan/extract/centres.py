@@ -24,9 +24,9 @@ _REACH = 8.0
 """Scan lines over which centres are joined."""
 _ROUGH = 0.04
 """Most roughness of a surface from scan line to scan line, as far as nothing shows more [px]."""
-_DARK = 0.6
-"""E-folds by which an end is darker than the stripe, from which it is blur: 0.55 of its light, for
-the stripe's own grows a little towards its middle."""
+_DARK = 0.7
+"""E-folds by which an end is darker than the stripe further in, from which it is blur: half of the
+light is left where a surface ends."""
 _CREDIBLE = 0.2
 """Share of the height that a ridge's score stands for, below which a fit has explained it away."""
 _BLUR = 0.2

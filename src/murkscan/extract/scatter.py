@@ -27,6 +27,9 @@ _JUMP = 1.3
 _SHARED = 2.0 / 3.0
 """Correlation of neighbours, as a multiple of what the variance of third differences lacks: of 20
 terms' worth of it, neighbours alone take away 30."""
+_WALK = 1.28
+"""Roughness of a surface that steps by chance, 1.21 of a step as `centres` counts it, as a multiple
+of what third differences over 3 lines show of it, √0.9 of a step."""
 _TOLD = 2.0
 """Standard deviations by which a pull exceeds its own noise, to tell of the blur."""
 _TURNS = 10
@@ -159,7 +162,7 @@ def _explain(bends: Float[np.ndarray, "m 2"]) -> tuple[float, float, float]:
     # What is seen is itself known to 2.6 / √n of it: less than twice that says nothing.
     hidden = 2.6 / math.sqrt(len(surest)) * noise
     floor = seen - noise if seen - noise > 2.0 * hidden else 0.0
-    most = math.sqrt(floor + hidden)
+    most = _WALK * math.sqrt(floor + hidden)
     rest = bends[bends[:, 0] ** 2 > 2.0 * floor]
     if len(rest) < 3 * ENOUGH:
         return 1.1, float(np.sqrt(floor)), most
