@@ -68,21 +68,29 @@ def test_a_faint_stripe_is_found_beneath_a_bright_glow():
 
 
 def test_snow_is_no_stripe():
-    """Forty bright particles a frame, each in one frame only, with and without a stripe."""
+    """Forty bright particles a frame, each in one frame only, with and without a stripe.
+
+    A particle right before the stripe is brighter than it, and may be taken for it; what lies
+    elsewhere may not.
+    """
     rng = np.random.default_rng(1)
-    light = []
-    for _ in range(12):
-        one = _glow()
+    light, nearest = [], []
+    for i in range(12):
+        one, near = _glow(), np.full(len(LINES), np.inf)
         for u, v in zip(rng.uniform(0, LENGTH, 40), rng.uniform(0, HEIGHT, 40), strict=True):
-            near = (np.arange(HEIGHT)[:, None] - v) ** 2 + (LINES - u) ** 2
-            one = one + rng.uniform(20, 120) * np.exp(-0.5 * near / 1.5**2)
+            apart = (np.arange(HEIGHT)[:, None] - v) ** 2 + (LINES - u) ** 2
+            one = one + rng.uniform(20, 120) * np.exp(-0.5 * apart / 1.5**2)
+            near = np.minimum(near, np.hypot(LINES - u, _hull(i) - v))
         light.append(one)
+        nearest.append(near)
     assert sum(len(stripe) for stripe in _extract(_film(light))) == 0
     found = _extract(_film([one + _light(_hull(i), 25.0) for i, one in enumerate(light)]))
-    off = np.concatenate(
-        [s.pixels[:, 1] - _hull(i)[s.pixels[:, 0].astype(int)] for i, s in enumerate(found)]
-    )
-    assert np.mean(np.abs(off) < 1.5) > 0.99
+    lines = [s.pixels[:, 0].astype(int) for s in found]
+    off = np.concatenate([found[i].pixels[:, 1] - _hull(i)[line] for i, line in enumerate(lines)])
+    free = np.concatenate([nearest[i][line] > 8 for i, line in enumerate(lines)])
+    assert np.mean(free) > 0.7
+    assert np.mean(np.abs(off[free]) < 1.5) > 0.997
+    assert np.mean(np.abs(off[~free]) < 1.5) > 0.9
 
 
 @pytest.mark.parametrize("overlap", [10, 20])
