@@ -107,10 +107,9 @@ def _in_our_words(error: CycloptsError) -> str:
         name = error.token.keyword or (error.argument.name if error.argument else "It")
         return f'{name} takes a {kind} and nothing behind it, got "{error.token.value}".'
     if isinstance(error, MissingArgumentError) and error.command_chain and error.argument:
-        command = " ".join(("murkscan", *error.command_chain))
         name, is_first = error.argument.name, error.argument.index is not None
         wanted = name.lstrip("-").upper() if is_first else name
-        return f"{command} needs {wanted}; {command} --help says what that is."
+        return f"{error.command_chain[-1]} needs {wanted}; the same with --help says what that is."
     return str(error)
 
 
