@@ -148,12 +148,13 @@ def test_poses_of_which_nothing_is_stated_are_never_changed():
     np.testing.assert_allclose(led.navigation.velocity.values, [[SPEED, 0, 0]] * 29, atol=1e-12)
 
 
-def test_a_speed_beside_an_attitude_wanders_by_a_fifth_over_two_and_a_half_seconds():
+def test_a_speed_beside_an_attitude_stands_for_velocities_and_places():
     one = scan(1e-3, lasers=1)
-    log = measure_along_attitude(one.navigation, np.array([0.0, 0.1, 0.0]), 0.1, (0.0, 5.0))
-    assert log.accuracy.velocity_bias == pytest.approx(0.01)
-    # The mean of readings over ten seconds errs as a wander of 20 % over 2.5 s does: by
-    # 0.2 · 0.1 m/s · √(2 · 2.5 s / 10 s).
-    mean = log.accuracy.velocity_noise / np.sqrt(10 / 0.1)
-    assert mean == pytest.approx(0.02 * np.sqrt(0.5))
-    assert by_recording(log, 2.0, Pose.identity()).navigation.velocity.times[0] == -2.0
+    log = measure_along_attitude(one.navigation, np.array([0.0, -0.1, 0.0]), 0.1)
+    assert log.speed == pytest.approx(0.1)
+    assert log.course == (0.0, -1.0, 0.0)
+    assert log.accuracy.speed == 0.1
+    assert log.velocity is None
+    assert log.position is None
+    moved = by_recording(log, 2.0, Pose.identity()).navigation
+    assert (moved.speed, moved.course) == (log.speed, log.course)

@@ -15,10 +15,6 @@ from ..types.trajectory import Trajectory
 Shift = Float[np.ndarray, "_"] | float
 """Of one reading's columns."""
 
-_RATE = 0.1
-"""Time between the readings that stand for a speed which is about known [s]."""
-_WANDER, _TIME = 0.2, 2.5
-"""How such a speed wanders, as a share of it, and over which time [s]: waves and a pilot's hand."""
 _CLOCK = 0.5
 """Standard deviation of a log's clock of which nothing is stated [s]: recorders stamp pictures
 when they arrive."""
@@ -54,30 +50,22 @@ def measure_speed(speed: float, sigma: float, axis: int) -> Measured | None:
     return Measured(navigation, Pose(vehicle_from_camera, np.zeros(3)), is_placed=False)
 
 
-def measure_along_attitude(
-    navigation: Navigation, velocity: Vector, sigma: float, span: tuple[float, float]
-) -> Navigation:
+def measure_along_attitude(navigation: Navigation, velocity: Vector, sigma: float) -> Navigation:
     """Put a speed that is about known in place of measured velocities and places.
 
-    White noise as strong at low frequencies stands for its wandering: σ² = 2·s²·τ/dt between
-    readings dt apart, for a wander of s over a time τ.
+    It holds at all times of the recording, whatever the log's clock and wherever the log ends.
 
     Args:
         navigation: What was measured beside.
         velocity: Along the vehicle's own axes [m/s].
         sigma: Standard deviation of its mean, as a share of it.
-        span: When it begins and ends, by the same clock [s].
     """
-    times = np.arange(span[0], span[1] + _RATE, _RATE)
     speed = float(np.linalg.norm(velocity))
-    accuracy = replace(
-        navigation.accuracy,
-        velocity_noise=_WANDER * speed * float(np.sqrt(2 * _TIME / _RATE)),
-        velocity_bias=sigma * speed,
-        position_noise=None,
+    x, y, z = (float(part) / speed for part in velocity)
+    accuracy = replace(navigation.accuracy, velocity_noise=None, position_noise=None, speed=sigma)
+    return replace(
+        navigation, accuracy=accuracy, velocity=None, position=None, speed=speed, course=(x, y, z)
     )
-    readings = Readings(times, np.tile(velocity, (len(times), 1)))
-    return replace(navigation, accuracy=accuracy, velocity=readings, position=None)
 
 
 def measure_poses(log: Trajectory, accuracy: NavigationAccuracy) -> Navigation | None:

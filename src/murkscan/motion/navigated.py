@@ -104,8 +104,7 @@ def _measure(
     """Give what a scan may correct: measurements whose accuracy is stated, or a speed's."""
     measured = log.navigation
     if ahead is not None and measured.attitude is not None:
-        span = float(measured.attitude.times[0]), float(measured.attitude.times[-1])
-        return measure_along_attitude(measured, ahead, sigma, span) if sigma else None
+        return measure_along_attitude(measured, ahead, sigma) if sigma else None
     if stated is None:
         return None
     is_placed = measured.position is not None and stated.position_noise is not None

@@ -98,6 +98,8 @@ class Navigation(ShortRepr):
     position: Readings | None = None
     """Position of the vehicle's origin [m]: north, east, down."""
     speed: float | None = None
-    """Speed along the vehicle's forward axis that is about known [m/s]; negative for backwards."""
+    """Speed that is about known [m/s]; negative for backwards."""
+    course: tuple[float, float, float] = (1.0, 0.0, 0.0)
+    """Unit direction of that speed along the vehicle's own axes."""
     instruments: int = field(default=0)
     """Number of the set of instruments: passes of the same dive share their biases."""

@@ -149,7 +149,7 @@ class Log:
         if log.speed is not None:
             wander = settings.speed_wander * abs(log.speed)
             factor = self.layout.shared(self.number, "speed_factor")
-            ahead = np.tile([log.speed, 0.0, 0.0], (len(times), 1))
+            ahead = np.tile(log.speed * np.array(log.course), (len(times), 1))
             poses = path.at(times)
             residuals = Velocity().predict(path, poses) - ahead * (1 + errors[factor])
             slopes = Velocity().slopes(path, poses)
