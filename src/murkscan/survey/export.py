@@ -1,6 +1,7 @@
 """Write a scan's cloud in another format, in streams."""
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -8,7 +9,7 @@ import numpy as np
 
 from ..cloud import thin_clouds
 from ..distribute import AbstractExecutor, Threads
-from ..errors import InputError
+from ..errors import InputError, MissingResult
 from ..io.cloud_files import check_cloud_suffix, writing_cloud_file
 from ..project import (
     ACCEPT,
@@ -76,9 +77,10 @@ def export_cloud(
 
 def _find_extent(project: Project, blocks: "_Blocks") -> float:
     """Give an upper limit of a cloud's longest edge [m]."""
-    trajectory = find_trajectory(project)
-    if trajectory is not None:
-        return float(np.linalg.norm(np.ptp(trajectory.positions, axis=0))) + 2 * _SIGHT
+    with suppress(MissingResult):  # a cloud may be there alone; then its own points tell
+        trajectory = find_trajectory(project)
+        if trajectory is not None:
+            return float(np.linalg.norm(np.ptp(trajectory.positions, axis=0))) + 2 * _SIGHT
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for block in blocks:
         low = np.minimum(low, block.points.min(axis=0, initial=np.inf))
