@@ -12,7 +12,7 @@ demo: hello $(VENV)/core
 
 hello:
 	@test -e $(VENV)/core || echo "Once: an environment in $(VENV) with murkscan's libraries, about 0.9 GB," \
-	  "two to four minutes. Then the demo: about a minute and a half."
+	  "two to four minutes. Then the demo: one to two minutes."
 
 test: check
 	$(BIN)/python -m pytest -n auto --dist loadfile
