@@ -8,6 +8,7 @@ from pathlib import Path
 import av
 import cv2
 import numpy as np
+from live import halved
 
 from murkscan.calibrate import Chessboard
 from murkscan.io.images import read_image
@@ -36,18 +37,10 @@ def make_dive(folder: Path, attenuation: float) -> tuple[Path, list[Image]]:
 
 
 def _make_scene(attenuation: float) -> Scene:
-    scene = load_scene("hull-c1.5")
-    camera = scene.rig.camera
-    width, height = (side // 2 for side in camera.size)
-    f, g = camera.focal_length
-    centre = ((width - 1) / 2, (height - 1) / 2)
-    camera = replace(
-        camera, size=(width, height), focal_length=(f / 2, g / 2), principal_point=centre
-    )
+    scene = halved(load_scene("hull-c1.5"))
     first = len(scene) // 2
     return replace(
         scene,
-        rig=replace(scene.rig, camera=camera),
         medium=replace(scene.medium, attenuation=attenuation),
         sensor=replace(scene.sensor, interlaced=False),
         times=scene.times[first : first + 2 * PICTURES : 2],

@@ -249,7 +249,7 @@ def _resident() -> float:
 
 def _compare(out: Path) -> list[Figure]:
     """Replay a dive whose laser goes out for a while, scan it, and hold both maps together."""
-    scene = _halved(load_scene("hull-c1.5"))
+    scene = halved(load_scene("hull-c1.5"))
     first = len(scene) // 4
     times = scene.times[first : first + 2 * COMPARED]
     simulate_recording(replace(scene, times=times, recorder=Recorder("ffv1")), out)
@@ -271,7 +271,7 @@ def _compare(out: Path) -> list[Figure]:
     ]
 
 
-def _halved(scene: Scene) -> Scene:
+def halved(scene: Scene) -> Scene:
     """The same scene through a camera of a quarter of the pixels, which is looked at sooner."""
     camera = scene.rig.camera
     width, height = (side // 2 for side in camera.size)

@@ -16,10 +16,10 @@ from ..io.rig_toml import load_rig
 from ..io.text import save_text
 from ..motion import ConstantSpeed
 from ..page import EmbeddedPage, Gallery, Note, Picture, Section, Table, render_page
-from ..project import Project, find_trajectory
+from ..project import CLOUD, Project, find_trajectory
 from ..simulate import as_standalone, parse_scene, read_scene
 from ..types.arrays import ColourImage, Scalars
-from ..view import Depth, View, render, standard_views
+from ..view import Depth, View, front_view, render
 from .progress import Progress, silent
 from .scan import scan
 from .simulate import simulate_recording
@@ -134,7 +134,7 @@ def _of(name: str, progress: Progress) -> Progress:
 
 def _draw_hull(project: Project) -> ColourImage:
     """Draw the hull as the camera sees it, turned to lie along the picture."""
-    front = next(v for v in standard_views(find_trajectory(project)) if v.name == "front")
+    front = front_view(find_trajectory(project))
     right, down, away = front.view_from_world
     x, y, z = (float(part) for part in away)
     view = View("from below", np.stack([down, -right, away]), front.eye)
@@ -168,7 +168,7 @@ def _row(one: Judged) -> tuple[str, int, Decimal, Decimal | None]:
     """Put a scan's errors beside its name."""
     false = Decimal(f"{100 * one.errors.false / max(one.errors.count, 1):.1f}")
     rms = Decimal(f"{1e3 * one.errors.rms:.2f}") if np.isfinite(one.errors.rms) else None
-    return one.name, len(one.project.load_cloud()), false, rms
+    return one.name, one.project.finished(CLOUD).result.points, false, rms
 
 
 def _frames(both: Sequence[Judged]) -> list[Picture]:

@@ -32,7 +32,7 @@ from ..types.quantity import Quantity
 from ..types.trajectory import Trajectory
 from ..view.render import render
 from ..view.values import SignedValues
-from ..view.views import standard_views
+from ..view.views import front_view, standard_views
 from .anomalies import save_dents
 from .measured import as_plain, keep_measurement, measuring
 from .sample import load_sample
@@ -153,7 +153,7 @@ def search_dents(
                 load_georeference(project),
                 surface=surface,
                 colours=SignedValues(sample.cloud.points, deviation.values),
-                view=next(view for view in standard_views(trajectory) if view.name == "front"),
+                view=front_view(trajectory),
             )
 
         keep_measurement(project, name, _as_measurement(search, reference), write=write)

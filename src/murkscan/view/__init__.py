@@ -20,4 +20,5 @@ from .turn import TURN as TURN
 from .turn import draw_turn as draw_turn
 from .viewer_page import render_viewer as render_viewer
 from .views import View as View
+from .views import front_view as front_view
 from .views import standard_views as standard_views

@@ -14,7 +14,7 @@ from ..types.trajectory import Trajectory
 from .plain import Plain
 from .render import draw
 from .subject import Subject
-from .views import View, standard_views
+from .views import View, front_view
 from .window import Window
 
 TURN = 144
@@ -47,7 +47,7 @@ def draw_turn(
         InputError: A point is not finite, or the picture is below 64 x 64 pixels.
     """
     subject = Subject.of(surface)
-    front = next(view for view in standard_views(trajectory) if view.name == "front")
+    front = front_view(trajectory)
     views = [_turn(front, 2 * math.pi * number / pictures) for number in range(pictures)]
     windows = _windows(subject, front, views, size)
     jobs = list(zip(views, windows, strict=True))

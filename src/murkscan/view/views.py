@@ -61,6 +61,11 @@ def standard_views(trajectory: Trajectory | None = None) -> tuple[View, ...]:
     )
 
 
+def front_view(trajectory: Trajectory | None = None) -> View:
+    """Give the view from the front, as the camera sees it; see `standard_views`."""
+    return next(view for view in standard_views(trajectory) if view.name == "front")
+
+
 def _look(forward: np.ndarray, up: np.ndarray) -> Matrix3:
     right = np.cross(forward, up)
     rows = np.stack([right, np.cross(forward, right), forward])
