@@ -117,26 +117,29 @@ def tests_of(path: str) -> list[str]:
     return [f"tests/{one}" for one in sorted(rooms) if (ROOT / "tests" / one).is_dir()]
 
 
-def fails(tree: Path, *tests: str) -> bool:
-    """Run tests in the copy until the first fails."""
+def find_failure(tree: Path, *tests: str) -> str:
+    """Run tests in the copy until the first fails; name it, or nothing where all pass."""
     environment = os.environ | {"PYTHONPATH": str(tree / "src")}
     command = [sys.executable, "-m", "pytest", "-x", "-q", "-n", "2", "--dist", "loadfile", *tests]
     try:
         done = subprocess.run(
-            command, cwd=tree, env=environment, capture_output=True, timeout=LONGEST, check=False
-        )
+            command, cwd=tree, env=environment, capture_output=True, timeout=LONGEST, check=False,
+            text=True,
+        )  # fmt: skip
     except subprocess.TimeoutExpired:
-        return True
-    return done.returncode != 0
+        return f"no end within {LONGEST:g} s"
+    failed = re.search(r"^(?:FAILED|ERROR) (\S+)", done.stdout, re.MULTILINE)
+    return "" if done.returncode == 0 else failed.group(1) if failed else "pytest itself"
 
 
-def judge(mutant: Mutant, tree: Path) -> str:
-    """Say who notices an error: the tests of its own room, the suite, or nobody."""
+def judge(mutant: Mutant, tree: Path) -> tuple[str, str]:
+    """Say who notices an error, the tests of its own room, the suite, or nobody; and by which."""
     mutant.apply(tree)
     try:
-        if fails(tree, *tests_of(mutant.path)):
-            return "room"
-        return "suite" if fails(tree) else "nobody"
+        if by := find_failure(tree, *tests_of(mutant.path)):
+            return "room", by
+        by = find_failure(tree)
+        return ("suite", by) if by else ("nobody", "")
     finally:
         mutant.undo(tree)
 
@@ -158,9 +161,10 @@ def main() -> None:
     done = {line["mutant"]: line["noticed"] for line in told}
     for mutant in drawn:
         if str(mutant) not in done:
-            done[str(mutant)] = judge(mutant, tree)
+            done[str(mutant)], by = judge(mutant, tree)
+            line = {"mutant": str(mutant), "noticed": done[str(mutant)], "by": by}
             with notes.open("a") as file:
-                file.write(json.dumps({"mutant": str(mutant), "noticed": done[str(mutant)]}) + "\n")
+                file.write(json.dumps(line) + "\n")
         print(f"{done[str(mutant)]:7} {mutant}", file=sys.stderr, flush=True)
     by = Counter(done[str(mutant)] for mutant in drawn)
     survivors = [f"- {mutant}" for mutant in drawn if done[str(mutant)] == "nobody"]
