@@ -127,6 +127,8 @@ class LiveFinder:
         finally:
             self.found.close()
             self._learn_next.set()
+            # A process that ends beside a worker of its own that is still learning hangs.
+            learning.join()
 
     def _wait_for_background(self) -> Background | None:
         while self.background is None and not self.frames.is_done and not self.failure:
