@@ -38,17 +38,20 @@ def write_on(image: ColourImage, view: View, window: Window, legend: Legend | No
     from matplotlib.figure import Figure
 
     width, height = window.size
-    figure = Figure(figsize=(width / _DPI, height / _DPI), dpi=_DPI)
-    canvas = FigureCanvasAgg(figure)
-    figure.figimage(image, zorder=-1)
+    figure = Figure(figsize=(width / _DPI, height / _DPI), dpi=_DPI, frameon=False)
     points = height * _TEXT * 72 / _DPI
     figure.text(0.02, 0.975, view.name, va="top", size=1.2 * points, color=_INK)
     _write_scale(figure, window, points)
     _write_axes(figure, view, window, points)
     if legend is not None:
         _write_colours(figure, legend, points)
-    canvas.draw()  # type: ignore[no-untyped-call]
-    return np.ascontiguousarray(np.asarray(canvas.buffer_rgba())[..., :3])  # type: ignore[no-untyped-call]
+    canvas = FigureCanvasAgg(figure)
+    renderer = canvas.get_renderer()  # type: ignore[no-untyped-call]
+    paper = np.asarray(canvas.buffer_rgba())  # type: ignore[no-untyped-call]
+    # Laid under the writing as it is: a picture that the figure draws is resampled first.
+    paper[..., :3], paper[..., 3] = image, 255
+    figure.draw(renderer)
+    return np.ascontiguousarray(paper[..., :3])
 
 
 def _write_scale(figure: "Figure", window: Window, points: float) -> None:
