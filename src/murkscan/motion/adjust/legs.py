@@ -15,6 +15,7 @@ from jaxtyping import Float
 from ..._kernels.facets import fit_facets, sum_cells
 from ...types.arrays import Directions, Indices, Points, Scalars, SmallNumbers, Vector
 from ...types.navigation import Navigation
+from ...types.trajectory import Trajectory
 from .path import Path, Poses
 
 _JUMP = 3.0
@@ -42,6 +43,9 @@ class Pass:
     bright: Scalars
     """Brightness of the stripe at each point."""
     navigation: Navigation
+    start: Trajectory | None = None
+    """world_from_vehicle at `times` where registration has laid the pass, from which it is
+    adjusted; None: where its log says."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +68,9 @@ class Leg:
     num_columns: int
     size: float
     """Of a cell [m]."""
+    slant: Vector
+    """Unit direction in the vehicle's frame, within the sheet, along which a point moves that lies
+    farther away."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,6 +90,8 @@ class Facets:
     """Towards the sensor, in the world."""
     axes: Float[np.ndarray, "n 2 3"]
     """Two axes across the line of sight, along which slopes count."""
+    slants: Directions
+    """Directions of `Leg.slant` in the world."""
     slope_variance: Float[np.ndarray, "n 2"]
     """Variance of the plane's slope along them."""
     variance: Scalars
@@ -165,7 +174,16 @@ def _make_leg(
         seen / held[:, None],
         columns,
         max(size, spacing, _line_spacing(profile, line, points) * lines_a_column),
+        _find_slant(line - line.min(), points),
     )
+
+
+def _find_slant(line: Indices, points: Points) -> Vector:
+    """Give along which direction the points of a scan line lie, whatever their distance."""
+    count = np.maximum(np.bincount(line), 1)
+    mean = np.stack([np.bincount(line, p) for p in points.T], axis=1) / count[:, None]
+    off = points - mean[line]
+    return np.asarray(np.linalg.eigh(off.T @ off)[1][:, -1])
 
 
 def _profile_spacing(profile: Indices, points: Points, poses: Poses) -> float:
@@ -213,6 +231,7 @@ def make_facets(leg: Leg, path: Path) -> Facets:
         points,
         planes[:, :3],
         axes,
+        (rows.rotations @ leg.slant)[row],
         planes[:, 3:5],
         planes[:, 5],
         sums[good, 0],

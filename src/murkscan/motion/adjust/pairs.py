@@ -23,6 +23,10 @@ _BEYOND = 1.0
 _GOLDEN = (5**0.5 - 1) / 2
 _SLOWEST = 0.01
 """Speed of a line over the surface below which it is not known where it was when [m/s]."""
+_STEEPEST = 2.0
+"""Most by which slopes are taken to be flattened: bumps of four cells."""
+_STEEP = 0.3
+"""Cosine of the angle between a sheet and a surface's normal below which it only grazes it."""
 _CERTAIN = 2.0
 """How many times over the noise of normals a slope must stand to count."""
 
@@ -42,7 +46,7 @@ class Side:
     path: Path
     """Where the leg lies."""
     delays: Float[np.ndarray, "r 3"]
-    """How much later the leg saw what lies aside of each row [s/m], in the world."""
+    """How much later the leg saw what lies beside each row [s/m], in the world."""
 
     def at_places(self, which: Indices, aside: Directions) -> tuple[Scalars, Points]:
         """Give when the leg saw what lies aside of some facets, and where its vehicle saw it.
@@ -53,7 +57,7 @@ class Side:
 
         Args:
             which: Facets.
-            aside: From their middles, along the surface, in the world [m].
+            aside: From their middles, in the world [m].
         """
         rows = self.facets.row[which]
         later = np.einsum("ni,ni->n", self.delays[rows], aside)
@@ -74,7 +78,7 @@ def make_side(facets: Facets, path: Path) -> Side:
 
 
 def _delays(facets: Facets) -> Float[np.ndarray, "r 3"]:
-    """Give how time goes on across each row of a leg [s/m]: not at all along its line."""
+    """Give how time goes on across each row of a leg [s/m]: not at all within its sheet."""
     leg, rows = facets.leg, len(facets.leg.row_times)
     held = np.maximum(np.bincount(facets.row, minlength=rows), 1)[:, None]
 
@@ -83,27 +87,26 @@ def _delays(facets: Facets) -> Float[np.ndarray, "r 3"]:
 
     centre, column = total(facets.points) / held, total(facets.column[:, None] * 1.0) / held
     off = (facets.column - column[facets.row, 0])[:, None]
-    along = total(off * (facets.points - centre[facets.row]))
-    along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-12)
+    across = np.cross(total(off * (facets.points - centre[facets.row])), total(facets.slants))
+    across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-12)
     there = np.flatnonzero(np.bincount(facets.row, minlength=rows) > 1)
     delays = np.zeros((rows, 3))
     if len(there) < 3:
         return delays
     speed = np.gradient(centre[there], leg.row_times[there], axis=0)
-    across = speed - np.einsum("ni,ni->n", speed, along[there])[:, None] * along[there]
-    square = np.einsum("ni,ni->n", across, across)[:, None]
-    delays[there] = across / np.maximum(square, _SLOWEST**2)
+    pace = np.einsum("ni,ni->n", speed, across[there])
+    pace = np.copysign(np.maximum(np.abs(pace), _SLOWEST), pace)
+    delays[there] = across[there] / pace[:, None]
     return delays
 
 
 def steady_normals(facets: Facets) -> tuple[Directions, Directions]:
     """Compute normals without noise, and the mean normals of patches.
 
-    Draw normals towards their patch's mean as far as noise alone made them differ.
-
     On a plain surface normals differ by noise only, and would seem to fix the shift along it: the
     share of a slope that noise explains is taken away (James and Stein, Estimation with quadratic
-    loss, 1961), patch by patch.
+    loss, 1961), patch by patch. On a rough one planes over some cells are flatter than what they
+    stand for, which is put right then.
     """
     leg = facets.leg
     patches = -(-leg.num_columns // _PATCH)
@@ -115,11 +118,51 @@ def steady_normals(facets: Facets) -> tuple[Directions, Directions]:
     seen = np.bincount(which, np.einsum("ni,ni->n", off, off)) / count
     noise = np.bincount(which, facets.variance * facets.slope_variance.sum(axis=1)) / count
     share = np.clip(1 - _CERTAIN * noise / np.maximum(seen, 1e-300), 0, 1)
-    steady = mean[which] + share[which, None] * off
+    steady = mean[which] + _steepen(facets, mean[which], share[which, None] * off)
     return (
         steady / np.linalg.norm(steady, axis=1, keepdims=True),
         mean[which] / np.linalg.norm(mean[which], axis=1, keepdims=True),
     )
+
+
+def _steepen(facets: Facets, mean: Directions, off: Directions) -> Directions:
+    """Make slopes as steep as the heights of neighbouring cells say.
+
+    A plane over three cells is flatter than bumps of some cells' width are. Where two legs' cells
+    lie aside of one another by the same over a stretch, as of a vehicle that keeps its speed, the
+    rest would look like a shift of the leg, anew each time that facets are paired.
+    """
+    steep = off.copy()
+    for axis, step in enumerate(((1, 0), (0, 1))):
+        along = facets.axes[:, axis]
+        part = np.einsum("ni,ni->n", off, along)[:, None] * along
+        steep += (_flatness(facets, mean, off, step) - 1) * part
+    return steep
+
+
+def _flatness(facets: Facets, mean: Directions, off: Directions, step: tuple[int, int]) -> float:
+    """Give by what slopes along rows or columns are to be multiplied.
+
+    Between a cell and its next neighbour, and the one after, the mean slope is to explain the
+    difference of their heights; from both follows what would hold close by (Richardson, The
+    deferred approach to the limit, 1927).
+    """
+    near, far = (_explain(facets, mean, off, (n * step[0], n * step[1])) for n in (1, 2))
+    return float(np.clip((4 * near - far) / 3, 1.0, _STEEPEST))
+
+
+def _explain(facets: Facets, mean: Directions, off: Directions, step: tuple[int, int]) -> float:
+    """Give the factor of slopes that explains heights of facets some cells apart best."""
+    leg = facets.leg
+    place = np.full((len(leg.row_times) + step[0], leg.num_columns + step[1]), -1)
+    place[facets.row, facets.column] = np.arange(len(facets))
+    other = place[facets.row + step[0], facets.column + step[1]]
+    one = np.flatnonzero(other >= 0)
+    other = other[one]
+    between = facets.points[other] - facets.points[one]
+    plain, rough = (np.einsum("ni,ni->n", n[one] + n[other], between) / 2 for n in (mean, off))
+    square = float(rough @ rough)
+    return -float(plain @ rough) / square if square > 0 else 1.0
 
 
 def pair_facets(a: Side, b: Side, reach: float, most: int, *, bumps_match: Rows) -> Ties:
@@ -149,6 +192,23 @@ def pair_facets(a: Side, b: Side, reach: float, most: int, *, bumps_match: Rows)
     return ties[_draw(np.arange(len(ties)), most)]
 
 
+def measure_apart(a: Side, b: Side, reach: float) -> Scalars:
+    """Give how far each facet of a leg that lies on another leg lies in front of it [m]."""
+    one, two = a.facets, b.facets
+    size = max(one.leg.size, two.leg.size)
+    found = b.tree.query(one.points, distance_upper_bound=float(np.hypot(reach, _BEYOND * size)))
+    first = np.flatnonzero(np.isfinite(found[0]))
+    second = np.asarray(found[1])[first]
+    normal = a.directions[first] + b.directions[second]
+    length = np.linalg.norm(normal, axis=1)
+    normal /= np.maximum(length, 1e-12)[:, None]
+    between = one.points[first] - two.points[second]
+    off = np.einsum("ni,ni->n", normal, between)
+    lateral = np.linalg.norm(between - off[:, None] * normal, axis=1)
+    kept = (length > 2 * _AGREE) & (np.abs(off) < reach) & (lateral < _BEYOND * size)
+    return off[kept]
+
+
 def _draw(which: Indices, most: int) -> Indices:
     """Draw some of many, spread evenly and without a pattern: by multiples of the golden ratio."""
     if len(which) <= most:
@@ -171,7 +231,7 @@ def _tie(
     direction /= np.maximum(length, 1e-12)[:, None]
     between = one.points[first] - two.points[second]
     off = np.einsum("ni,ni->n", direction, between)
-    aside = between - off[:, None] * direction
+    aside = between - off[:, None] * _along_slants(one, two, first, second, direction)
     lateral = np.linalg.norm(aside, axis=1)
     kept = (length > 2 * _AGREE) & (np.abs(off) < reach) & (lateral < _BEYOND * size)
     kept &= _are_inner(one)[first] & _are_inner(two)[second]
@@ -191,6 +251,23 @@ def _tie(
         np.zeros(count),
         variance,
     )
+
+
+def _along_slants(
+    one: Facets, two: Facets, first: Indices, second: Indices, direction: Directions
+) -> Directions:
+    """Give by what one comes from one surface to the other, for each metre along the direction.
+
+    A point that is off lies off along its sheet. Were places compared that lie over one another
+    along the normal, noise of a height would be one of the moment, too, in step with it, and ways
+    that let all heights shrink would seem to fit better.
+    """
+    slant, other = one.slants[first], two.slants[second]
+    same = np.sign(np.einsum("ni,ni->n", slant, other))[:, None]
+    slant = slant + same * other
+    steep = np.einsum("ni,ni->n", slant, direction)
+    steep = np.copysign(np.maximum(np.abs(steep), _STEEP * np.linalg.norm(slant, axis=1)), steep)
+    return slant / steep[:, None]
 
 
 def _are_inner(facets: Facets) -> Mask:
