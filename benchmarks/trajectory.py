@@ -7,11 +7,14 @@ import argparse
 import resource
 import time
 from dataclasses import asdict
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 from harness import DATA, Figure, tell
 from kept import Kept
+from scipy.spatial import cKDTree
+from trajectory_merge import register, scan_alone, start_from
 from trajectory_scene import Case, make_dive
 
 from murkscan.motion.adjust import adjust_passes
@@ -29,16 +32,22 @@ CASES = {
     "hull, two sheets, log a": (Case(log="a"), {"surface": 0.1, "place": 0.4, "length": 0.7}),
     "hull, two sheets, log b": (Case(log="b"), {"surface": 0.1, "place": 0.4, "length": 0.7}),
     "hull, two sheets, log c": (Case(log="c"), {"surface": 0.1, "place": 0.4, "length": 0.7}),
-    "hull, one sheet, log a": (Case(log="a", sheets=1), {"surface": 0.9}),
+    "hull, one sheet, log a": (Case(log="a", sheets=1), {"surface": 0.9, "to rigid": 0.5}),
     "hull, one sheet and a crossing pass, log a": (
         Case(log="a", sheets=1, crossing=True),
-        {"surface": 0.5},
+        {"surface": 0.5, "to rigid": 0.5},
     ),
-    "hull, one sheet, log b": (Case(log="b", sheets=1), {}),
-    "hull, one sheet, log c": (Case(log="c", sheets=1), {}),
+    "hull, one sheet, log b": (Case(log="b", sheets=1), {"seams": 0.3, "to logged": 1.0}),
+    "hull, one sheet, log c": (Case(log="c", sheets=1), {"seams": 0.3, "to logged": 1.0}),
     "seams and anodes, two sheets, log a": (Case(relief="seams"), {"surface": 0.3}),
-    "plain plate, two sheets, log a": (Case(relief="plain"), {"surface": 0.1}),
-    "plain plate, two sheets, log b": (Case(relief="plain", log="b"), {"surface": 0.1}),
+    "plain plate, two sheets, log a": (
+        Case(relief="plain"),
+        {"surface": 0.1, "place to logged": 1.0},
+    ),
+    "plain plate, two sheets, log b": (
+        Case(relief="plain", log="b"),
+        {"surface": 0.1, "place to logged": 1.0},
+    ),
     "speed ± 40 %, stand-off ± 50 mm, two sheets, log c": (
         Case(log="c", speed_swing=0.4 / 2**0.5, stand_off_swing=0.05),
         {"surface": 0.2, "length": 1.0},
@@ -49,8 +58,11 @@ CASES = {
         {"surface": 0.1, "place": 0.4, "length": 0.7},
     ),
 }
-"""Each case with its bars [mm], of every seed."""
+"""Each case with its bars of every seed: in mm, and of surface or place as a share of another's."""
+SAME = 3e-3
+"""Distance up to which true points of two passes count as one place [m]."""
 KINDS = ("surface", "place", "length")
+WAYS = ("as logged", "rigid", "rigid at its best", "adjusted")
 
 
 def main() -> None:
@@ -86,19 +98,29 @@ def run_kept(kept, name, seed):
 
 
 def run(name, case, seed):
-    """Adjust one dive, and compare it with the truth."""
+    """Adjust one dive as `murkscan scan` and `murkscan merge` do, and compare it with the truth."""
     dive = make_dive(case, seed)
-    start, cpu = time.perf_counter(), time.process_time()
-    adjusted = adjust_passes(dive.passes)
     times = [one.times for one in dive.passes]
+    start, cpu = time.perf_counter(), time.process_time()
+    logged, alone = scan_alone(dive.passes)
+    if len(dive.passes) == 1:
+        laid, adjusted = alone, adjust_passes(dive.passes)
+    else:
+        laid = [
+            way.carry(pose) for way, pose in zip(alone, register(dive.passes, alone), strict=True)
+        ]
+        adjusted = adjust_passes(start_from(dive.passes, laid))
+    seconds, cpu = time.perf_counter() - start, time.process_time() - cpu
+    ways = [path.as_trajectory(at) for path, at in zip(adjusted.paths, times, strict=True)]
+    placed = [place_points(dive, one, times) for one in (logged, laid, ways)]
+    placed.insert(2, lay_rigidly(placed[0], dive))
     results = {
-        "as logged": judge(place_points(dive, adjusted.as_logged, times), dive),
-        "rigid": judge(lay_rigidly(place_points(dive, adjusted.as_logged, times), dive), dive),
-        "adjusted": judge(place_points(dive, adjusted.paths, times), dive),
+        **{way: judge(points, dive) for way, points in zip(WAYS, placed, strict=True)},
         "pulls": length_pulls(dive, adjusted),
         "blind": adjusted.blind,
-        "seconds": time.perf_counter() - start,
-        "cpu": time.process_time() - cpu,
+        "sound": adjusted.seams.after <= adjusted.seams.before,
+        "seconds": seconds,
+        "cpu": cpu,
         "gigabytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20,
     }
     print(name, seed, results, flush=True)
@@ -122,14 +144,12 @@ def length_pulls(dive, adjusted):
     return pulls
 
 
-def place_points(dive, paths, times):
-    """Carry each pass's true points into the world along some paths."""
-    placed = []
-    for path, truth, moments in zip(paths, dive.truths, times, strict=True):
-        poses = path.at(moments)
-        turned = np.einsum("nij,nj->ni", poses.rotations[truth.profile], truth.own)
-        placed.append(turned + poses.positions[truth.profile])
-    return placed
+def place_points(dive, ways, times):
+    """Carry each pass's true points into the world along some ways."""
+    return [
+        way.transform(truth.own, moments[truth.profile])
+        for way, truth, moments in zip(ways, dive.truths, times, strict=True)
+    ]
 
 
 def lay_rigidly(placed, dive):
@@ -156,9 +176,41 @@ def judge(placed, dive):
         true = np.linalg.norm(np.diff(one.world[middle], axis=0))
         lengths.append((np.linalg.norm(np.diff(points[middle], axis=0)) - true) * 2 / true)
     sizes = across, np.linalg.norm(off, axis=1), lengths
-    return {
-        k: float(1e3 * np.sqrt(np.mean(np.square(s)))) for k, s in zip(KINDS, sizes, strict=True)
-    }
+    found = dict(zip(KINDS, sizes, strict=True))
+    if len(placed) > 1:
+        found["seams"] = seams_of(across, dive)
+    return {k: float(1e3 * np.sqrt(np.mean(np.square(s)))) for k, s in found.items()}
+
+
+def seams_of(across, dive):
+    """Give how far passes lie apart across the surface where both saw it [m]."""
+    errors = np.split(across, np.cumsum([len(one.world) for one in dive.truths])[:-1])
+    trees = [cKDTree(one.world) for one in dive.truths]
+    found = []
+    for i, j in combinations(range(len(trees)), 2):
+        some = np.arange(0, len(errors[i]), 7)
+        away, which = trees[j].query(dive.truths[i].world[some], distance_upper_bound=SAME)
+        near = np.isfinite(away)
+        found.append(errors[i][some[near]] - errors[j][which[near]])
+    return np.concatenate(found)
+
+
+def figures_of(name, done):
+    """Give the worst of the seeds of one case, beside its bars."""
+    bars, adjusted = CASES[name][1], [one["adjusted"] for one in done]
+    kinds = [*KINDS, "seams"] if "seams" in adjusted[0] else KINDS
+    for kind in kinds:
+        worst = max(one[kind] for one in adjusted)
+        yield Figure(f"{name}: {kind}, worst of {len(done)}", worst, "mm", bars.get(kind))
+    for bar, kind, other in (
+        ("to rigid", "surface", "rigid"),
+        ("to logged", "surface", "as logged"),
+        ("place to logged", "place", "as logged"),
+    ):
+        if bar in bars:
+            worst = max(one["adjusted"][kind] / one[other][kind] for one in done)
+            words = f"{name}: {kind}, as a share of that {other}, worst of {len(done)}"
+            yield Figure(words, worst, "", bars[bar])
 
 
 def tell_all(results):
@@ -168,15 +220,11 @@ def tell_all(results):
         done = [one for one in seeds if one is not None]
         if not done:
             continue
-        bars = CASES[name][1]
-        for kind in KINDS:
-            worst = max(one["adjusted"][kind] for one in done)
-            figures.append(
-                Figure(f"{name}: {kind}, worst of {len(done)}", worst, "mm", bars.get(kind))
-            )
+        figures += figures_of(name, done)
+        kinds = [*KINDS, "seams"] if "seams" in done[0]["adjusted"] else KINDS
         cells = [
-            " / ".join(f"{np.median([one[way][k] for one in done]):.3g}" for k in KINDS)
-            for way in ("as logged", "rigid", "adjusted")
+            " / ".join(f"{np.median([one[way][k] for one in done]):.3g}" for k in kinds)
+            for way in WAYS
         ]
         pulls = np.concatenate([one["pulls"] for one in done])
         spread = f"{np.sqrt(np.mean(pulls**2)):.2g}"
@@ -205,25 +253,27 @@ of R 5 to 10 m with 0.5 to 1.5 mm (RMS) of growth that goes together over 8 to 2
 heading drifting by 0.5°/min, depth to 5 mm, ten readings a second. Log b: as a without DVL; the
 speed is known to 10 % and wanders by 20 %. Log c: no instrument at all; about 0.1 m/s, straight on.
 Each pass begins at a place known to 30 mm. *As logged* is not the raw log but the smooth path that
-fits it best; *rigid* lays each such pass on the truth as a rigid body, which no registration can
-better. Errors are RMS against the truth after one rigid alignment of everything, of points without
-noise: *surface* across the true surface, *place* of a physical point, *length* over 2 m along a
-pass. Real motion: stretches of `../shared/data/underwater_trajectories` in which the vehicle turns
-least, scaled to 0.1 m/s; they set no setting.
-
-One pass is what `murkscan scan` corrects; several at once are for programs so far, take minutes
-each, and without a DVL have settled in wrong places, a decimetre off.
+fits it best. Each pass is corrected alone as `murkscan scan` does (with one sheet it stays as
+logged); *rigid* then lays the passes on one another by `align_clouds`, as `murkscan merge --rigid`
+does, and *adjusted* adjusts them together from there, as `murkscan merge`; of one pass it is that
+of the scan. *Rigid at its best* lays each pass as logged on the truth as a rigid body, which no
+registration can better. Errors are RMS against the truth after one rigid alignment of everything,
+of points without noise: *surface* across the true surface, *place* of a physical point, *length*
+over 2 m along a pass; *seams* how far passes lie apart across the surface where both saw it. Real
+motion: stretches of `../shared/data/underwater_trajectories` in which the vehicle turns least,
+scaled to 0.1 m/s; they set no setting.
 
 The page holds the cases and seeds that were run to the end, and no others; *worst of N* says how
 many seeds. *Error / σ* is that of a pass's length over what `Trajectory.errors` states: 1 would be
 right, above 1 the stated deviation is too small.
 
-Median of the seeds, surface / place / length [mm]:
+Median of the seeds, surface / place / length / seams [mm]:
 
 """
 HEAD = (
-    "| case | as logged | rigid at its best | adjusted | length: error / σ, RMS | CPU [s] |\n"
-    "|---|---|---|---|---|---|"
+    "| case | as logged | rigid | rigid at its best | adjusted | length: error / σ, RMS | CPU [s] "
+    "|\n"
+    "|---|---|---|---|---|---|---|"
 )
 
 
