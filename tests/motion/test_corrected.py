@@ -6,11 +6,14 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from murkscan.io.values import load_value, save_value
 from murkscan.motion import ConstantSpeed, PoseLog
-from murkscan.motion.adjust.adjust import _longest_without
+from murkscan.motion.adjust.checks import longest_without
 from murkscan.motion.corrected import _from_first, correct_motion
 from murkscan.motion.correction_words import tell_correction, tell_doubt
-from murkscan.motion.measured import Measured, by_recording, measure_along_attitude
+from murkscan.motion.measured import by_recording, measure_along_attitude
+from murkscan.project import describe
+from murkscan.types.measured import Measured
 from murkscan.types.navigation import NavigationAccuracy
 from murkscan.types.pose import Pose
 from murkscan.types.profile import Profile
@@ -103,9 +106,9 @@ def test_one_laser_on_one_pass_shows_no_place_twice():
 def test_relief_that_lies_on_nothing_is_counted_in_time():
     times, good = np.arange(0, 10, 0.5), np.array([0.0, 1.0, 2.0, 6.0, 7.0, 8.0, 9.0])
     # 0.5 and 1.5 lie alone; 2.5 to 5.5 lie on nothing.
-    assert _longest_without(times, good) == pytest.approx(3.0)
-    assert _longest_without(times, times) == 0.0
-    assert _longest_without(times, np.zeros(0)) == pytest.approx(9.5)
+    assert longest_without(times, good) == pytest.approx(3.0)
+    assert longest_without(times, times) == 0.0
+    assert longest_without(times, np.zeros(0)) == pytest.approx(9.5)
 
 
 def test_a_way_from_its_first_pose_states_the_same_of_every_length():
@@ -158,3 +161,12 @@ def test_a_speed_beside_an_attitude_stands_for_velocities_and_places():
     assert log.position is None
     moved = by_recording(log, 2.0, Pose.identity()).navigation
     assert (moved.speed, moved.course) == (log.speed, log.course)
+
+
+def test_what_was_measured_is_kept_as_it_was(tmp_path):
+    source = measured(scan(1e-3, lasers=1), (4e5, 5e6, 0))
+    save_value(tmp_path / "measured.json", source)
+    assert describe(load_value(tmp_path / "measured.json", Measured)) == describe(source)
+    spoken = ConstantSpeed(-0.2, "y", 0.05).measure()
+    save_value(tmp_path / "speed.json", spoken)
+    assert describe(load_value(tmp_path / "speed.json", Measured)) == describe(spoken)

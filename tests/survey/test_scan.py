@@ -98,6 +98,7 @@ def test_another_motion_redoes_only_what_depends_on_it(scanned, hull, tmp_path):
     assert stripes.stat().st_mtime_ns == before
     length = np.ptp(project.load_cloud().points[:, 1])
     assert length < 0.6 * np.ptp(scanned.load_cloud().points[:, 1])
+    assert project.load_measured().navigation.speed == HULL_SPEED / 2
 
 
 def test_a_stopped_scan_goes_on_at_its_first_missing_part(scanned, hull, tmp_path):

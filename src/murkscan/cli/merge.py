@@ -16,13 +16,15 @@ def merge(
     out: Path,
     reach_mm: float | None = None,
     voxel_mm: float | None = None,
+    rigid: Annotated[bool, Parameter(negative=())] = False,
     as_logged: Annotated[bool, Parameter(negative=())] = False,
     unit: Literal["m", "cm", "mm", "in", "ft"] = "m",
     start: Annotated[tuple[str, ...], Parameter(negative=(), allow_leading_hyphen=True)] = (),
 ) -> None:
     """Lay several scans of one object on another and merge them into one cloud.
 
-    Each pass is laid on those before it where they overlap; the first stays where it is. What the
+    Each pass is laid on those before it where they overlap; then all are adjusted together, each
+    along its whole way, where [navigation] of their rigs states how good their logs are. What the
     overlap does not determine (a plain hull slides along itself) is named, and stays as logged.
     Then mesh, measure, view and report work on the result.
 
@@ -38,6 +40,8 @@ def merge(
         the smaller one's size unless said.
     voxel_mm
         Thin the merged cloud to one point a voxel of this edge [mm]: means, weighted by sigma.
+    rigid
+        Move each pass as a rigid body; the first stays where it is.
     as_logged
         Move nothing: the poses of all passes are in one frame already, and good enough.
     unit
@@ -53,10 +57,12 @@ def merge(
             raise InputError(f"{flag} must be above 0, got {value:g}.")
     if start and as_logged:
         raise InputError("--start says where aligning begins, and --as-logged aligns nothing.")
+    if rigid and as_logged:
+        raise InputError("--rigid moves passes as rigid bodies, and --as-logged moves none.")
     starts = [read_pose("--start", text) for text in start]
     from ..measure.reference import UNITS
     from ..survey.merge import merge_passes
-    from .summary import print_result
+    from .summary import print_remarks, print_result
     from .words import tell
 
     with progress_bars() as progress:
@@ -64,6 +70,7 @@ def merge(
             passes,
             out,
             align=not as_logged,
+            adjust=not rigid,
             reach=None if reach_mm is None else reach_mm / 1e3,
             voxel=None if voxel_mm is None else voxel_mm / 1e3,
             unit=UNITS[unit],
@@ -72,5 +79,6 @@ def merge(
             progress=progress,
         )
     for one in result.passes:
-        tell("pass", f"{one.path}: {one.words}")
+        tell("pass", f"{one.path}: {one.words}", *one.correction)
+    print_remarks(result.remarks)
     print_result("merge", result, out / "cloud" / "cloud.ply", out=out)

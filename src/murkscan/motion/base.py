@@ -7,8 +7,8 @@ import numpy as np
 
 from ..errors import InputError
 from ..types.arrays import Points, Scalars
+from ..types.measured import Measured
 from ..types.trajectory import Trajectory
-from .measured import Measured
 
 _SLOWEST, _FASTEST = 1e-9, 1e3
 """Sizes of a speed [m/s] or a step [m] that a scan can have."""

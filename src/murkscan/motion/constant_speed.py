@@ -4,9 +4,10 @@ from dataclasses import dataclass
 from typing import ClassVar, final
 
 from ..types.arrays import Scalars
+from ..types.measured import Measured
 from ..types.trajectory import Trajectory
 from .base import AbstractMotion, Direction, check_pace, follow_line
-from .measured import Measured, measure_speed
+from .measured import measure_speed
 
 
 @final

@@ -8,15 +8,15 @@ from scipy.spatial.transform import Rotation
 
 from ..types.arrays import Scalars
 from ..types.laser import Axis
+from ..types.measured import Measured
 from ..types.pose import Pose
 from ..types.profile import Profile
 from ..types.trajectory import Trajectory
-from .adjust import Adjusted, adjust_passes
+from .adjust import Adjusted, Seams, adjust_passes
 from .adjust.passes import make_pass
 from .adjust.sureness import Sureness, judge_directions
-from .measured import Measured
 
-_FEWEST = 20
+FEWEST = 20
 """Profiles below which there is nothing to correct: a spline of some pieces."""
 _BLIND = 1.5
 """Longest stretch [s] whose relief may lie on something else than its like: three tiles in a row.
@@ -38,11 +38,13 @@ class Correction:
     """Pieces of surface that were found twice by their relief."""
     blind: float
     """Longest stretch [s] whose relief does not lie on its like in the end."""
+    seams: Seams
+    """How far passes lie apart where they overlap, of passes that were corrected together."""
 
     @property
     def is_sound(self) -> bool:
         """Whether it may be believed: it has not settled in a wrong place."""
-        return self.blind <= _BLIND
+        return self.blind <= _BLIND and self.seams.after <= self.seams.before
 
 
 def correct_motion(
@@ -64,7 +66,7 @@ def correct_motion(
     """
     times, mount = logged.times, measured.vehicle_from_camera
     one = make_pass(parts, times, axes, mount, measured.navigation)
-    if len(times) < _FEWEST or len(one.points) == 0:
+    if len(times) < FEWEST or len(one.points) == 0:
         return None
     adjusted = adjust_passes([one], tell=tell)
     if not any(map(len, adjusted.groups)):
@@ -78,18 +80,20 @@ def correct_motion(
         found,
         np.linalg.norm(found.positions - logged.positions, axis=1),
         tuple(judge_directions(blind, found, found.line_of_sight())),
-        _judge_instruments(adjusted),
-        adjusted.num_tiles,
+        judge_instruments(adjusted, 0),
+        adjusted.tiles_of(0),
         adjusted.blind,
+        adjusted.seams,
     )
 
 
-def _judge_instruments(adjusted: Adjusted) -> dict[str, tuple[float, float, float]]:
-    log = adjusted.logs[0]
+def judge_instruments(adjusted: Adjusted, number: int) -> dict[str, tuple[float, float, float]]:
+    """Give the errors of a pass's instruments as `Correction.instruments` has them."""
+    log = adjusted.logs[number]
     stated = {log.layout.name(place): sigma for place, sigma in log.priors()}
     return {
         name: (value, sigma, stated[name])
-        for name, (value, sigma) in adjusted.instrument_errors(0).items()
+        for name, (value, sigma) in adjusted.instrument_errors(number).items()
     }
 
 

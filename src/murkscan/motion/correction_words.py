@@ -25,12 +25,40 @@ _CLOCK = 0.02
 
 def tell_correction(correction: Correction) -> tuple[str, ...]:
     """Say how far the log was corrected, how sure each direction is, and what stayed open."""
+    return (
+        f"corrected from what the scan saw twice, by {_tell_moved(correction)}",
+        *_tell_known(correction, _SECOND),
+    )
+
+
+def tell_correction_of_pass(correction: Correction) -> tuple[str, ...]:
+    """Say the same of a pass that was corrected together with others."""
+    return (
+        f"corrected along its way from what the passes saw of the same places, by "
+        f"{_tell_moved(correction)} from where it lay as a rigid body",
+        *_tell_known(correction, _CROSSING),
+    )
+
+
+_SECOND = (
+    "a second pass at right angles near the middle, laid on this one by `murkscan merge`, would "
+    "tell"
+)
+_CROSSING = "a pass that crosses this one at right angles near its middle would tell"
+
+
+def _tell_moved(correction: Correction) -> str:
     moved, times = correction.moved, correction.trajectory.times
     usual, most = math.sqrt((moved**2).mean()), float(moved.max())
+    return (
+        f"{in_mm(usual, digits=3)} mm (RMS), {in_mm(most, digits=3)} mm at most, "
+        f"{times[moved.argmax()] - times[0]:.1f} s after the beginning"
+    )
+
+
+def _tell_known(correction: Correction, cure: str) -> list[str]:
+    """Say how sure each direction is, and what stayed open."""
     lines = [
-        f"corrected from what the scan saw twice, by {in_mm(usual, digits=3)} mm (RMS), "
-        f"{in_mm(most, digits=3)} mm at most, {times[moved.argmax()] - times[0]:.1f} s after the "
-        "beginning",
         "known now to (1σ, but for the ends; in brackets by the log alone): "
         + ", ".join(map(_tell_sureness, correction.sureness)),
     ]
@@ -39,16 +67,13 @@ def tell_correction(correction: Correction) -> tuple[str, ...]:
         lines.append(clock)
     is_open = [one.name for one in correction.sureness if one.is_open]
     if is_open:
-        lines.append(
-            f"from the log alone: {', '.join(is_open)}; a second pass at right angles near the "
-            "middle, laid on this one by `murkscan merge`, would tell"
-        )
+        lines.append(f"from the log alone: {', '.join(is_open)}; {cure}")
     if not correction.num_tiles:
         lines.append(
             "the surface is too plain to show the shift along it: the way's length and place are "
             "those of the log"
         )
-    return tuple(lines)
+    return lines
 
 
 def tell_doubt(correction: Correction) -> str:

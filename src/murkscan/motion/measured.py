@@ -1,36 +1,19 @@
 """What a motion is known by: measurements with their accuracy, which a scan may correct."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
-from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
 from ..types.arrays import Vector
+from ..types.measured import Measured
 from ..types.navigation import Navigation, NavigationAccuracy, Readings
 from ..types.pose import Pose
-from ..types.short_repr import ShortRepr
 from ..types.trajectory import Trajectory
-
-Shift = Float[np.ndarray, "_"] | float
-"""Of one reading's columns."""
 
 _CLOCK = 0.5
 """Standard deviation of a log's clock of which nothing is stated [s]: recorders stamp pictures
 when they arrive."""
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Measured(ShortRepr):
-    """A vehicle's instruments, by the recording's clock, and where its camera sits."""
-
-    navigation: Navigation
-    vehicle_from_camera: Pose
-    is_placed: bool
-    """Whether the world is the log's own; otherwise it is the camera's first frame."""
-    origin: Vector = field(default_factory=lambda: np.zeros(3))
-    """Where in the log's world the measured places count from [m]: near the scan, since a spline
-    about coordinates of maps would lose digits."""
 
 
 def measure_speed(speed: float, sigma: float, axis: int) -> Measured | None:
@@ -102,19 +85,5 @@ def by_recording(navigation: Navigation, start: float, mount: Pose) -> Measured:
     accuracy = navigation.accuracy
     if not accuracy.clock_offset:
         accuracy = replace(accuracy, clock_offset=_CLOCK)
-
-    def move(readings: Readings | None, shift: Shift = 0.0) -> Readings | None:
-        return (
-            None if readings is None else Readings(readings.times - start, readings.values - shift)
-        )
-
-    moved = replace(
-        navigation,
-        accuracy=accuracy,
-        attitude=move(navigation.attitude),
-        rates=move(navigation.rates),
-        velocity=move(navigation.velocity),
-        depth=move(navigation.depth, origin[2:]),
-        position=move(navigation.position, origin),
-    )
+    moved = replace(navigation, accuracy=accuracy).moved(seconds=-start, shift=-origin)
     return Measured(moved, mount, is_placed=True, origin=origin)

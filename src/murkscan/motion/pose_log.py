@@ -9,13 +9,14 @@ import numpy as np
 
 from ..errors import InputError
 from ..types.arrays import Mask, Scalars
+from ..types.measured import Measured
 from ..types.navigation import Navigation, NavigationAccuracy
 from ..types.pose import Pose
 from ..types.trajectory import Trajectory
 from .base import AbstractMotion
 from .errors import log_errors
 from .excursions import Excursion, leave_out_excursions
-from .measured import Measured, by_recording, measure_poses
+from .measured import by_recording, measure_poses
 
 _SAME = 1e-6
 """Difference below which two times are the same [s]: a clock since 1970 has no finer digits."""

@@ -1,9 +1,9 @@
 """How the points of several passes move together with the errors of their rigs and alignments.
 
 A rig's errors move all passes that it saw, each along its own cameras; those of a pass's poses
-move that pass alone. A pass that is laid on others by their overlap gives way to that: it turns and
-shifts as a whole, by what the errors of both sides bring apart there, and by the error of the
-alignment itself.
+move that pass alone, or all passes where they were adjusted together. A pass that is laid on others
+by their overlap gives way to that: it turns and shifts as a whole, by what the errors of both sides
+bring apart there, and by the error of the alignment itself.
 """
 
 from collections.abc import Sequence
@@ -16,7 +16,7 @@ from jaxtyping import Float
 from scipy.linalg import block_diag
 
 from ..geometry.stripe_blur import Sight, is_facing
-from ..types.arrays import Indices, Mask, Vector
+from ..types.arrays import Indices, Mask, Ratios, Vector
 from ..types.cloud import PointCloud
 from ..types.rig import Rig
 from ..types.rig_covariance import RigCovariance
@@ -25,6 +25,8 @@ from .seen_points import find_pixels, look_back, shift_points
 from .uncertainty import Shifts, error_modes
 
 Moves = Float[np.ndarray, "6 parameters"]
+_PART = 20_000
+"""Points that are worked on at once: some tens of megabytes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,22 +59,26 @@ class MergedErrors:
     """None for a pass of which neither rig nor poses are known."""
     answers: Sequence[Answer | None]
     """One a pass; None for one that stays where it is."""
+    is_joint: bool = False
+    """Whether the passes' ways were adjusted together: error k of the poses of one is then error k
+    of all."""
 
     @classmethod
-    def of_passes(cls, passes: Sequence[SeenPass | None]) -> "MergedErrors":
+    def of_passes(
+        cls, passes: Sequence[SeenPass | None], *, is_joint: bool = False
+    ) -> "MergedErrors":
         """Begin with passes of which none is laid on another."""
-        return cls(passes, [None] * len(passes))
+        return cls(passes, [None] * len(passes), is_joint)
 
     @cached_property
     def basis(self) -> Float[np.ndarray, "parameters modes"]:
         """Change of each parameter with each independent error, at one standard deviation.
 
         The parameters are those of each rig, in the order of its covariance, the errors of each
-        pass's poses, and six numbers of each pass's alignment.
+        pass's poses, or of all together, and six numbers of each pass's alignment.
         """
         rigs = [error_modes(covariance) for covariance in self._covariances.values()]
-        poses = sum(0 if one is None else one.trajectory.num_errors for one in self.passes)
-        return block_diag(*rigs, np.eye(poses + 6 * len(self.passes)))
+        return block_diag(*rigs, np.eye(self._num_pose_errors + 6 * len(self.passes)))
 
     def shifts(self, owner: Indices, cloud: PointCloud) -> Shifts:
         """Compute how far points move with each independent error, in the merged world [m].
@@ -86,6 +92,28 @@ class MergedErrors:
             mine = owner == number
             shifts[mine] = self._shift_pass(number, cloud[mine])
         return shifts
+
+    def spread(self, owner: Indices, cloud: PointCloud) -> Ratios:
+        """Compute the common standard deviation of points, in the direction where it is largest.
+
+        The arguments are those of `shifts`; what comes back is in metres.
+        """
+        sigma = np.zeros(len(cloud), np.float32)
+        for start in range(0, len(cloud), _PART):
+            part = slice(start, start + _PART)
+            shifts = self.shifts(owner[part], cloud[part])
+            largest = np.linalg.eigvalsh(shifts @ shifts.transpose(0, 2, 1))[:, -1]
+            sigma[part] = np.sqrt(np.maximum(largest, 0.0))
+        return sigma
+
+    def answer_rigs(self, apart: Shifts) -> Shifts:
+        """Leave of errors that bring passes apart only those of rigs.
+
+        What the others do is known already where the ways were adjusted together.
+        """
+        only = apart.copy()
+        only[:, :, apart.shape[2] - self._num_pose_errors - 6 * len(self.passes) :] = 0.0
+        return only
 
     @property
     def is_stated(self) -> bool:
@@ -181,9 +209,15 @@ class MergedErrors:
         first = sum(counts[name] for name in takewhile(lambda name: name != key, counts))
         return slice(first, first + counts[key])
 
+    @property
+    def _num_pose_errors(self) -> int:
+        counts = [one.trajectory.num_errors for one in self.passes if one is not None]
+        return max(counts, default=0) if self.is_joint else sum(counts)
+
     def _modes_of_poses(self, number: int) -> slice:
         after = [one.trajectory.num_errors for one in self.passes[number:] if one is not None]
-        first = self.basis.shape[1] - 6 * len(self.passes) - sum(after)
+        held = self._num_pose_errors if self.is_joint else sum(after)
+        first = self.basis.shape[1] - 6 * len(self.passes) - held
         return slice(first, first + after[0])
 
 

@@ -35,6 +35,7 @@ from ..types.background import Background
 from ..types.cloud import PointCloud
 from ..types.cloud_part import CloudPart
 from ..types.frame_times import FrameTimes
+from ..types.measured import Measured
 from ..types.mesh import Mesh
 from ..types.part_note import PartNote
 from ..types.profile import Profile
@@ -257,6 +258,19 @@ class Project:
         if trajectory.errors is not None:
             with self._files(MOTION).making("errors.parquet") as path:
                 save_pose_errors(path, trajectory.errors)
+
+    def save_measured(self, measured: Measured) -> None:
+        """Write motion/measured.json: what the vehicle's instruments measured, and how well."""
+        with self._files(MOTION).making("measured.json") as path:
+            save_value(path, measured)
+
+    def load_measured(self) -> Measured | None:
+        """Read what a finished motion was measured by; None where nothing is stated of it."""
+        self.finished(MOTION)
+        files = self._files(MOTION)
+        if not files.made("measured.json"):
+            return None
+        return load_value(files.checked("measured.json"), Measured)
 
     def load_trajectory(self) -> Trajectory:
         """Read the poses of a finished motion."""

@@ -35,7 +35,7 @@ class Kind(Generic[R]):
 
 EXTRACT = Kind("extract", ExtractResult, meaning=2)
 TRIANGULATE = Kind("triangulate", TriangulateResult, meaning=2)
-MOTION = Kind("motion", MotionResult, meaning=3)
+MOTION = Kind("motion", MotionResult, meaning=4)
 CLOUD = Kind("cloud", CloudResult, meaning=3)
 MESH = Kind("mesh", MeshResult, meaning=3)
 VIEW = Kind("view", ViewResult, meaning=2)

@@ -1,6 +1,7 @@
 """The passes of a merged cloud: their rigs, and the errors that their points share."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -56,6 +57,7 @@ def load_merged_errors(project: Project) -> MergedErrors:
         FormatError: A rig, the poses or the record are damaged.
     """
     records, told = load_passes(project), _load_told(project)
+    is_joint = project.finished(CLOUD).result.is_joint
     trajectory = project.load_trajectory() if project.finished(MOTION).result.poses else None
     seen, first = list[SeenPass | None](), 0
     for record, one in zip(records, told, strict=True):
@@ -64,10 +66,10 @@ def load_merged_errors(project: Project) -> MergedErrors:
             seen.append(None)
         else:
             seen.append(SeenPass(rig, own, rig_key(record)))
-        first += one.pose_errors
-    errors = MergedErrors.of_passes(seen)
+        first += 0 if is_joint else one.pose_errors
+    errors = MergedErrors.of_passes(seen, is_joint=is_joint)
     answers = [_read_answer(project, one, len(errors.basis)) for one in told]
-    return MergedErrors(seen, answers)
+    return replace(errors, answers=answers)
 
 
 def _load_told(project: Project) -> Sequence[PassResult]:

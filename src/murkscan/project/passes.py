@@ -23,6 +23,10 @@ from .merged import load_pass_rig, rig_key
 from .results import PassRecord
 from .scanned import find_frame_times, find_trajectory, is_merged
 
+Placement = Pose | Trajectory
+"""Where a pass lies in the merged world: as a rigid body, or along its whole way, as
+world_from_camera with the merged cloud's frame numbers for times."""
+
 _SAMPLE = 2_000_000
 """Points of a pass, about, that are looked at to align it."""
 _GAP = 1000
@@ -103,17 +107,32 @@ class PassSource:
         """
         if not self.path.is_dir():
             return None
-        project = Project(self.path)
         try:
-            known, all_frames = find_trajectory(project), find_frame_times(project)
+            known = find_trajectory(Project(self.path))
         except MissingResult:
             return None
-        if known is None or all_frames is None:
+        way = None if known is None else self.count_frames(known, first_frame, frames)
+        return None if way is None else way.carry(world_from_pass)
+
+    def count_frames(
+        self, way: Trajectory, first_frame: int, frames: tuple[int, int]
+    ) -> Trajectory | None:
+        """Give a way at its frames, their merged numbers for times; None where it has no times.
+
+        Args:
+            way: By the times of its recording.
+            first_frame: As for `trajectory`.
+            frames: As for `trajectory`.
+        """
+        try:
+            all_frames = find_frame_times(Project(self.path))
+        except MissingResult:
+            return None
+        if all_frames is None:
             return None
         numbers = all_frames.frame.astype(np.int64) + (frames[0] - first_frame)
         inside = (numbers >= frames[0]) & (numbers <= frames[1])
-        poses = known.at(all_frames.time[inside]).carry(world_from_pass)
-        return replace(poses, times=numbers[inside].astype(float))
+        return replace(way.at(all_frames.time[inside]), times=numbers[inside].astype(float))
 
 
 def _relative(path: Path, out: Path) -> str:
@@ -145,25 +164,48 @@ class NumberedPass:
         """First and last frame by the merged cloud's count."""
         return self.first, self.first + self.high - self.low
 
-    def blocks(self, pose: Pose) -> Iterator[PointCloud]:
-        """Read its points where a pose lays them; points that cannot be are left out."""
+    def blocks(self, place: Placement) -> Iterator[PointCloud]:
+        """Read its points where they are laid; points that cannot be are left out."""
+        own = self.trajectory(Pose.identity()) if isinstance(place, Trajectory) else None
         for block in self.source.blocks():
             sound = block[block.is_sound()]
             frame = sound.frame.astype(np.int64) + (self.first - self.low)
-            yield replace(sound, frame=frame.astype(np.int32)).carry(pose)
+            numbered = replace(sound, frame=frame.astype(np.int32))
+            if isinstance(place, Pose):
+                yield numbered.carry(place)
+            else:
+                assert own is not None
+                yield _lay_along(numbered, own, place)
 
-    def sample(self) -> PointCloud:
-        """Read about two million of its points, as they lie."""
+    def sample(self, place: Placement | None = None) -> PointCloud:
+        """Read about two million of its points, as they lie unless they are laid elsewhere."""
         step = max(self.count // _SAMPLE, 1)
-        return PointCloud.concatenate([block[::step] for block in self.blocks(Pose.identity())])
+        blocks = self.blocks(place or Pose.identity())
+        return PointCloud.concatenate([block[::step] for block in blocks])
 
-    def see(self, pose: Pose) -> SeenPass | None:
+    def trajectory(self, place: Placement) -> Trajectory | None:
+        """Give the poses at its frames where it is laid; None where it has none."""
+        if isinstance(place, Trajectory):
+            return place
+        return self.source.trajectory(self.low, self.frames, place)
+
+    def see(self, place: Placement) -> SeenPass | None:
         """Tell how it was seen; None where its rig or its poses are not known."""
         rig = load_pass_rig(Project(self.source.path), self.record)
-        trajectory = self.source.trajectory(self.low, self.frames, pose)
+        trajectory = self.trajectory(place)
         if rig is None or trajectory is None:
             return None
         return SeenPass(rig, trajectory, rig_key(self.record))
+
+
+def _lay_along(cloud: PointCloud, own: Trajectory, way: Trajectory) -> PointCloud:
+    """Carry points from where their own poses have them to another way of the same camera."""
+    times = cloud.frame.astype(float)
+    ends = own.to_camera(cloud.points + cloud.normals, times)
+    seen = own.to_camera(cloud.points, times)
+    points = way.transform(seen, times)
+    normals = (way.transform(ends, times) - points).astype(np.float32)
+    return replace(cloud, points=points, normals=normals)
 
 
 def look_at(source: PassSource, record: PassRecord) -> NumberedPass:

@@ -155,6 +155,10 @@ class PassResult:
     answers: tuple[tuple[float, ...], ...] = ()
     """Change of its turn about the centre [rad] and of its shift [m] with each error of all rigs,
     poses and alignments; see `MergedErrors`. None for a pass that stays."""
+    correction: tuple[str, ...] = ()
+    """How its way was corrected by what the passes saw together; sentences for the user."""
+    corrected: float | None = field(default=None, metadata={"unit": "m"})
+    """By how far, RMS [m]; None where it was moved as a rigid body."""
 
 
 @dataclass(frozen=True)
@@ -171,6 +175,13 @@ class CloudResult:
     was known."""
     passes: tuple[PassResult, ...] = ()
     """The scans that a merged cloud was made of."""
+    remarks: tuple[str, ...] = ()
+    """Why passes were moved as rigid bodies; sentences for the user."""
+
+    @property
+    def is_joint(self) -> bool:
+        """Whether the ways of a merged cloud's passes were adjusted together."""
+        return any(one.corrected is not None for one in self.passes)
 
     def number_passes(self, frame: SignedFrameNumbers) -> Indices:
         """Tell in which pass of a merged cloud each frame of its count was taken."""

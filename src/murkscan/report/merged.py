@@ -55,6 +55,10 @@ class ReportedPass:
     """Root mean square distance there when it was laid [m]."""
     laid_on: Sequence[float]
     """Share of that overlap in each pass before it."""
+    correction: Sequence[str]
+    """How its way was corrected, in sentences; none where it was moved as a rigid body."""
+    corrected: float | None
+    """By how far, RMS [m]."""
     rig: int | None
     """Number of its rig among those below; None where it is not known."""
 
@@ -107,11 +111,15 @@ class MergedSummary:
     pictures: Sequence[Shown]
     unstated: Sequence[str]
     """Whose errors no interval knows, in sentences."""
+    remarks: Sequence[str]
+    """Why passes were moved as rigid bodies, in sentences."""
 
 
 def merged_as_html(summary: MergedSummary, heading: Heading = NO_HEADING) -> str:
     """Make report/index.html of a merged scan."""
     sections = [Section("", _headline(summary)), Section("Passes", _passes(summary))]
+    if ways := _ways(summary):
+        sections.append(Section("Ways of the passes", ways))
     if summary.pairs:
         sections.append(Section("Disagreement of the passes", _disagreement(summary)))
     if summary.pictures:
@@ -140,6 +148,7 @@ def merged_as_json(summary: MergedSummary, heading: Heading = NO_HEADING) -> dic
         "format": 1,
         **heading.as_plain(),
         "merged": [_as_plain_pass(one) for one in summary.passes],
+        "remarks": list(summary.remarks),
         "disagreement": [_as_plain_pair(one) for one in summary.pairs],
         "points": {"in_cloud": model.points},
         "mesh": {
@@ -199,6 +208,13 @@ def _passes(summary: MergedSummary) -> list[Block]:
     return [Note(_TO_KNOW), Table(rows, ("pass", "folder", "points", "frames", "rig", "place"))]
 
 
+def _ways(summary: MergedSummary) -> list[Block]:
+    """Say how each way was corrected along its length, or why not."""
+    notes: list[Block] = [Note(f"{words[:1].upper()}{words[1:]}.") for words in summary.remarks]
+    rows = [(one.name, "; ".join(one.correction)) for one in summary.passes if one.correction]
+    return [*notes, Table(rows)] if rows else notes
+
+
 def _disagreement(summary: MergedSummary) -> list[Block]:
     rows = [
         (
@@ -240,6 +256,8 @@ def _as_plain_pass(one: ReportedPass) -> dict[str, Any]:
         "rms_mm": None if one.rms is None else round_off(1e3 * one.rms),
         "rig": one.rig,
         "laid_on": [round_off(share) for share in one.laid_on],
+        "corrected_mm": None if one.corrected is None else round_off(1e3 * one.corrected),
+        "correction": list(one.correction),
     }
 
 

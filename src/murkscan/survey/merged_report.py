@@ -73,6 +73,7 @@ def summarise_merged(project: Project, pictures: list[Shown]) -> MergedSummary:
         commands=[*_list_commands(records), *list_commands(project)],
         pictures=pictures,
         unstated=list_unstated(project),
+        remarks=merged.remarks,
     )
 
 
@@ -97,6 +98,8 @@ def _describe_pass(record: PassRecord, told: PassResult, rig: int | None) -> Rep
         rms=None if moved is None else moved.rms,
         rig=rig,
         laid_on=told.laid_on,
+        correction=told.correction,
+        corrected=told.corrected,
     )
 
 

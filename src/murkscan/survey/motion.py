@@ -55,6 +55,8 @@ def follow_motion(
         logged, corrected = found
         trajectory = corrected.trajectory
         project.save_trajectory(trajectory, logged=logged)
+        if (measured := motion.measure()) is not None:
+            project.save_measured(measured)
         steps = np.linalg.norm(np.diff(trajectory.positions, axis=0), axis=1)
         return MotionResult(
             poses=len(trajectory.times),

@@ -1,12 +1,13 @@
 """What a vehicle's instruments measured on its way, and how well: a log that is not the truth."""
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
 
 from ..errors import InputError
-from .arrays import Scalars
+from .arrays import Scalars, Vector
 from .short_repr import ShortRepr
 
 
@@ -103,3 +104,18 @@ class Navigation(ShortRepr):
     """Unit direction of that speed along the vehicle's own axes."""
     instruments: int = field(default=0)
     """Number of the set of instruments: passes of the same dive share their biases."""
+
+    def moved(self, *, seconds: float, shift: Vector) -> "Navigation":
+        """Count times and places from elsewhere.
+
+        Args:
+            seconds: What is added to all times [s].
+            shift: What is added to all places, to depths its third coordinate [m].
+        """
+        values = {"position": shift, "depth": shift[2:]}
+        moved: dict[str, Any] = {
+            name: Readings(one.times + seconds, one.values + values.get(name, 0.0))
+            for name in ("attitude", "rates", "velocity", "depth", "position")
+            if (one := getattr(self, name)) is not None
+        }
+        return replace(self, **moved)

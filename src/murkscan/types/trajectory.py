@@ -54,6 +54,16 @@ class Trajectory(ShortRepr):
         times, positions, quaternions = joined
         return cls(times, positions, quaternions, errors if any(counts) else None)
 
+    @classmethod
+    def concatenate_joint(cls, parts: Sequence["Trajectory"]) -> "Trajectory":
+        """Put trajectories one after another whose error k is the same one in all of them.
+
+        Raises:
+            InputError: Their times do not increase.
+        """
+        columns = ("times", "positions", "quaternions", "errors")
+        return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in columns))
+
     @property
     def num_errors(self) -> int:
         """Count its independent errors."""

@@ -5,5 +5,6 @@
 
 from .adjust import Adjusted as Adjusted
 from .adjust import adjust_passes as adjust_passes
+from .checks import Seams as Seams
 from .legs import Pass as Pass
 from .settings import AdjustSettings as AdjustSettings

@@ -14,16 +14,16 @@ from jaxtyping import Float
 from ...errors import InputError
 from ...types.arrays import Mask, Scalars
 from ...types.trajectory import Trajectory
-from .doubt import Doubt
-from .first_path import first_path
-from .legs import Facets, Leg, Pass, cut_legs, leg_direction, make_facets
+from .checks import Seams, find_blind, measure_seams
+from .first_path import first_path, fit_path
+from .legs import Leg, Pass, cut_legs, make_facets
 from .log_terms import Log
 from .pairs import make_side, pair_facets
 from .path import WIDTH, Path
+from .rough import MORE, count_tiles, lay_roughly, may_meet
 from .settings import AdjustSettings
 from .solve import State, draw_errors, improve
-from .ties import Ties, as_seen, linearise
-from .tiles import Relief, make_relief, tie_tiles
+from .ties import Ties
 from .unknowns import Layout
 
 _MODES = 64
@@ -33,12 +33,6 @@ _ENOUGH = 5
 _BESIDE = 0.75
 """Time from a tile that was found up to which bumps lie on their like [s]: a vehicle keeps its
 speed so long; tiles follow one another in less."""
-_ROW = 0.3
-"""Time up to which tiles lie in one row, beside one another [s]."""
-_DRAWS = 24
-"""Errors that are drawn to say how far tiles may lie from their place: σ to one part in seven."""
-_MORE = 1.05
-"""Growth of the count of tiles that were found which is worth another look."""
 _FULL, _ALL = 3, 10**9
 """Rounds at the end which take all facets."""
 _SETTLED = 0.01e-3
@@ -60,11 +54,18 @@ class Adjusted:
     """Independent errors of all unknowns, each of one standard deviation."""
     errors_as_logged: Float[np.ndarray, "u m"]
     """The same by the logs alone."""
-    num_tiles: int
-    """Pieces of surface that were found again elsewhere by their relief."""
+    tiles: tuple[Ties, ...]
+    """Three for each piece of surface that was found again elsewhere by its relief."""
     blind: float
     """Longest stretch of a pass [s] whose relief does not lie on its like when all is done: long,
     and the pass has settled wrongly."""
+    seams: Seams
+    """How far passes lie apart where they overlap, before and after."""
+
+    def tiles_of(self, number: int) -> int:
+        """Count the pieces of a pass's surface that were found again, in it or in another pass."""
+        mine = [(ties.pass_a == number) | (ties.pass_b == number) for ties in self.tiles]
+        return sum(int(one.sum()) for one in mine) // 3
 
     def trajectory(self, number: int, times: Scalars) -> Trajectory:
         """Compute world_from_vehicle of a pass, with its errors.
@@ -123,19 +124,21 @@ def adjust_passes(
     state, logs = _start(passes, settings)
     state = improve(state, logs, [], settings, steps=4)
     as_logged, loose = state.paths, draw_errors(state, logs, [], settings, count=_MODES)
+    state = replace(state, paths=tuple(map(_lay, state.paths, passes)))
     legs = [
         leg
         for number, (one, path) in enumerate(zip(passes, state.paths, strict=True))
         for leg in cut_legs(number, one, path, settings.cell)
     ]
+    apart = measure_seams(state, legs)
     groups: list[Ties] = []
     known: list[Ties] = []
     for within in (True, False):
         rounds = settings.fine_rounds if not within or len(passes) == 1 else settings.inner_rounds
         tiles: list[Ties] = []
         for cycle in range(settings.cycles):
-            rough, found = _lay_roughly(state, logs, legs, known, settings, tell, within=within)
-            if cycle and _count(found) <= _MORE * _count(tiles):
+            rough, found = lay_roughly(state, logs, legs, known, settings, tell, within=within)
+            if cycle and count_tiles(found) <= MORE * count_tiles(tiles):
                 break
             tiles = found
             state, groups = _lay_finely(
@@ -145,50 +148,26 @@ def adjust_passes(
         if len(passes) == 1:
             break
     errors = draw_errors(state, logs, groups, settings, count=_MODES, as_seen=True)
-    blind = _find_blind(state, legs, logs, settings)
+    blind = find_blind(state, legs, logs, settings)
     scale = 1 / np.sqrt(_MODES)
     return Adjusted(
         state.paths, as_logged, state, logs, tuple(groups), scale * errors, scale * loose,
-        _count(known), blind,
+        tuple(known), blind, Seams(apart, measure_seams(state, legs)),
     )  # fmt: skip
 
 
-def _find_blind(
-    state: State, legs: Sequence[Leg], logs: Sequence[Log], settings: AdjustSettings
-) -> float:
-    """Look for all tiles once more, nearby: how long there was relief, and nothing where it should.
-
-    Returns:
-        The longest stretch [s] in which tiles have relief and none of them lies on its like.
-    """
-    reliefs = [make_relief(make_facets(leg, state.paths[leg.number])) for leg in legs]
-    exact = np.zeros((logs[0].layout.count, 1))
-    blind = 0.0
-    for i, j in combinations(range(len(legs)), 2):
-        if legs[i].number == legs[j].number:
-            for ties, times in _tie_legs(reliefs[i], reliefs[j], state, exact, settings, logs):
-                off = linearise(_carried(ties, state), state.paths).residuals.reshape(-1, 3)
-                pitch = max(legs[i].size, legs[j].size)
-                good = ties.time_a[::3][np.abs(off[:, :2]).max(axis=1, initial=0) < pitch]
-                blind = max(blind, _longest_without(np.unique(times), good))
-    return blind
-
-
-def _longest_without(times: Scalars, good: Float[np.ndarray, " k"]) -> float:
-    """Give the longest time between good ones, as far as there are others in between."""
-    good = np.sort(good)
-    near = np.diff(np.searchsorted(good, [times - _ROW, times + _ROW]), axis=0)[0] > 0
-    bad = times[~near]
-    which = np.searchsorted(good, bad)
-    spans = [np.ptp(bad[which == number]) for number in np.unique(which)]
-    return float(max(spans, default=0.0))
+def _lay(path: Path, one: Pass) -> Path:
+    """Lay a path where registration has laid its pass."""
+    return path if one.start is None else fit_path(path, one.start)
 
 
 def _start(passes: Sequence[Pass], settings: AdjustSettings) -> tuple[State, tuple[Log, ...]]:
     if not passes or any(len(one.times) < 2 for one in passes):
         raise InputError("An adjustment needs at least one pass, and two profiles in each.")
     paths = [
-        first_path(one.navigation, float(one.times[0]), float(one.times[-1]), settings.knot_step)
+        first_path(
+            one.navigation, float(one.times[0]), float(one.times[-1]), settings.knot_step, one.start
+        )
         for one in passes
     ]
     layout = Layout.of(paths, [one.navigation.instruments for one in passes])
@@ -197,45 +176,28 @@ def _start(passes: Sequence[Pass], settings: AdjustSettings) -> tuple[State, tup
         known = begun.setdefault(one.navigation.instruments, float(one.times[0]))
         begun[one.navigation.instruments] = min(known, float(one.times[0]))
     logs = tuple(
-        Log(number, one.navigation, layout,
-            float(one.times[0]) - begun[one.navigation.instruments])
+        _at_its_start(
+            Log(number, one.navigation, layout,
+                float(one.times[0]) - begun[one.navigation.instruments]),
+            passes, settings,
+        )
         for number, one in enumerate(passes)
     )  # fmt: skip
     return State(tuple(paths), np.zeros(layout.count)), logs
 
 
-def _lay_roughly(
-    state: State,
-    logs: Sequence[Log],
-    legs: Sequence[Leg],
-    known: Sequence[Ties],
-    settings: AdjustSettings,
-    tell: Callable[[str], None],
-    *,
-    within: bool,
-) -> tuple[State, list[Ties]]:
-    """Tie tiles within passes, or between them, beside the ties that are known."""
-    found: list[Ties] = []
-    for _ in range(settings.rounds):
-        reliefs = [make_relief(make_facets(leg, state.paths[leg.number])) for leg in legs]
-        errors = draw_errors(state, logs, [*known, *found], settings, count=_DRAWS)
-        count = _count(found)
-        found = [
-            _carried(ties, state)
-            for i, j in combinations(range(len(legs)), 2)
-            if _are_to_meet(legs[i], legs[j], within=within)
-            for ties, _ in _tie_legs(reliefs[i], reliefs[j], state, errors, settings, logs)
-        ]
-        state = improve(state, logs, [*known, *found], settings, steps=6)
-        tell(f"{_count(found)} tiles {'within' if within else 'between'} passes")
-        if _count(found) <= _MORE * count:
-            break
-    return state, found
-
-
-def _count(found: Sequence[Ties]) -> int:
-    """Count tiles: each has three ties."""
-    return sum(map(len, found)) // 3
+def _at_its_start(log: Log, passes: Sequence[Pass], settings: AdjustSettings) -> Log:
+    """Say where a registered pass begins: the world itself begins with one of them at most."""
+    start = passes[log.number].start
+    if start is None:
+        return log
+    is_placed = any(
+        one.navigation.position is not None and one.navigation.accuracy.position_noise
+        for one in passes
+    )
+    if is_placed or log.number > 0:
+        return replace(log, origin=start.positions[0], origin_sigma=settings.adrift)
+    return replace(log, origin=start.positions[0])
 
 
 def _matched(found: Sequence[Ties], a: Leg, b: Leg) -> Mask:
@@ -252,50 +214,6 @@ def _matched(found: Sequence[Ties], a: Leg, b: Leg) -> Mask:
     away = np.minimum(np.abs(known[after] - a.row_times), np.abs(known[after - 1] - a.row_times))
     near: Mask = away < _BESIDE
     return near
-
-
-def _are_to_meet(a: Leg, b: Leg, *, within: bool) -> bool:
-    """Tell whether tiles of one leg are looked for in another: between passes by one laser each."""
-    return a.number == b.number if within else a.number != b.number and a.laser == b.laser
-
-
-def _tie_legs(
-    a: Relief,
-    b: Relief,
-    state: State,
-    errors: Float[np.ndarray, "u m"],
-    settings: AdjustSettings,
-    logs: Sequence[Log],
-) -> list[tuple[Ties, Scalars]]:
-    if not _meet(a.facets, b.facets, settings.reach):
-        return []
-    leg, layout = a.facets.leg, logs[0].layout
-    one, other = leg.number, b.facets.leg.number
-    shares = [
-        errors[start : start + size].reshape(-1, 6, errors.shape[1])
-        for start, size in zip(layout.starts, layout.sizes, strict=True)
-    ]
-    doubt = Doubt(state.paths[one], state.paths[other], shares[one], shares[other], settings.reach)
-    forward = np.tile(leg_direction(state.paths[one], leg.row_times), (len(leg.row_times), 1))
-    return [tie_tiles(a, b, settings.tile, doubt, forward)]
-
-
-def _carried(ties: Ties, state: State) -> Ties:
-    """Carry both points from the world to the vehicles."""
-    return replace(
-        ties,
-        point_a=as_seen(ties.pass_a, ties.time_a, ties.point_a, state.paths),
-        point_b=as_seen(ties.pass_b, ties.time_b, ties.point_b, state.paths),
-    )
-
-
-def _meet(a: Facets, b: Facets, reach: float) -> bool:
-    """Tell whether the boxes about two legs meet."""
-    if not (len(a) and len(b)):
-        return False
-    low = np.maximum(a.points.min(axis=0), b.points.min(axis=0))
-    high = np.minimum(a.points.max(axis=0), b.points.max(axis=0))
-    return bool(np.all(low <= high + reach))
 
 
 def _lay_finely(
@@ -329,7 +247,7 @@ def _lay_finely(
             )
             for i, j in combinations(range(len(legs)), 2)
             if (legs[i].number == legs[j].number or not within)
-            and _meet(sides[i].facets, sides[j].facets, reach)
+            and may_meet(sides[i].facets, sides[j].facets, reach)
         ]
         if not groups:
             break

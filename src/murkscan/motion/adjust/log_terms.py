@@ -6,13 +6,13 @@ change as its slope.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from jaxtyping import Float
 from scipy import sparse
 
-from ...types.arrays import Mask, Scalars
+from ...types.arrays import Mask, Scalars, Vector
 from ...types.navigation import Navigation, Readings
 from .instruments import Heading, Instrument, Place, Rates, Tilt, Velocity
 from .path import Path, Poses
@@ -40,6 +40,10 @@ class Log:
     layout: Layout
     elapsed: float
     """Time since the same instruments' first pass [s]: how long the heading has drifted."""
+    origin: Vector = field(default_factory=lambda: np.zeros(3))
+    """Where the way begins, about, if no instrument has measured its place [m]."""
+    origin_sigma: float = _ORIGIN
+    """Standard deviation of that [m]; unless said, the world begins there."""
 
     def equations(
         self, path: Path, errors: Float[np.ndarray, " u"], settings: AdjustSettings
@@ -166,8 +170,9 @@ class Log:
             knows_depth = log.depth is not None and log.accuracy.depth_noise is not None
             place = Place((0, 1) if knows_depth else (0, 1, 2))
             poses = path.at(np.array([path.knots.start]))
-            origin = place.predict(path, poses)
-            parts.append(self._plain(origin, place.slopes(path, poses), poses, _ORIGIN, []))
+            off = place.predict(path, poses) - self.origin[list(place.axes)]
+            sigma = self.origin_sigma
+            parts.append(self._plain(off, place.slopes(path, poses), poses, sigma, []))
         return parts
 
     def _plain(

@@ -31,6 +31,9 @@ class AdjustSettings:
     reach: float = 0.2
     """How far from its place by the log a tile is looked for at most [m], where the log is so
     uncertain: farther away more and more tiles look alike."""
+    adrift: float = 0.2
+    """Standard deviation of the place where a registered pass begins, if no instrument measured it
+    [m]: as far as tiles are looked for."""
     rounds: int = 5
     """How often tiles are looked for, at most: each time they are less stretched."""
     cycles: int = 5

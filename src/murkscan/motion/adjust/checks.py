@@ -1,0 +1,82 @@
+"""Whether an adjustment may be believed: does what was seen twice lie on its like?"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from jaxtyping import Float
+
+from ...types.arrays import Scalars
+from .legs import Leg, make_facets
+from .log_terms import Log
+from .pairs import make_side, measure_apart
+from .rough import carry_to_vehicles, may_meet, tie_legs
+from .settings import AdjustSettings
+from .solve import State
+from .ties import linearise
+from .tiles import make_relief
+
+_ROW = 0.3
+"""Time up to which tiles lie in one row, beside one another [s]."""
+_SEAM = 20e-3
+"""Distance up to which passes are looked for in each other's place [m]."""
+
+
+@dataclass(frozen=True)
+class Seams:
+    """How far passes lie apart where they overlap, RMS along the surface's normal [m]."""
+
+    before: float
+    """Where registration has laid them, as rigid bodies."""
+    after: float
+    """Where they have been adjusted to."""
+
+
+def measure_seams(state: State, legs: Sequence[Leg]) -> float:
+    """Measure how far facets of different passes lie apart, RMS along their normals [m]."""
+    sides = [
+        make_side(make_facets(leg, path), path)
+        for leg in legs
+        for path in [state.paths[leg.number]]
+    ]
+    off = [
+        measure_apart(sides[i], sides[j], _SEAM)
+        for i, j in combinations(range(len(legs)), 2)
+        if legs[i].number != legs[j].number and may_meet(sides[i].facets, sides[j].facets, _SEAM)
+    ]
+    every = np.concatenate([np.zeros(0), *off])
+    return float(np.sqrt(np.mean(every**2))) if len(every) else 0.0
+
+
+def find_blind(
+    state: State, legs: Sequence[Leg], logs: Sequence[Log], settings: AdjustSettings
+) -> float:
+    """Look for all tiles once more, nearby: how long there was relief, and nothing where it should.
+
+    Returns:
+        The longest stretch [s] in which tiles have relief and none of them lies on its like.
+    """
+    reliefs = [make_relief(make_facets(leg, state.paths[leg.number])) for leg in legs]
+    exact = np.zeros((logs[0].layout.count, 1))
+    blind = 0.0
+    for i, j in combinations(range(len(legs)), 2):
+        if legs[i].number == legs[j].number:
+            for ties, times in tie_legs(reliefs[i], reliefs[j], state, exact, settings, logs):
+                off = linearise(carry_to_vehicles(ties, state), state.paths).residuals.reshape(
+                    -1, 3
+                )
+                pitch = max(legs[i].size, legs[j].size)
+                good = ties.time_a[::3][np.abs(off[:, :2]).max(axis=1, initial=0) < pitch]
+                blind = max(blind, longest_without(np.unique(times), good))
+    return blind
+
+
+def longest_without(times: Scalars, good: Float[np.ndarray, " k"]) -> float:
+    """Give the longest time between good ones, as far as there are others in between."""
+    good = np.sort(good)
+    near = np.diff(np.searchsorted(good, [times - _ROW, times + _ROW]), axis=0)[0] > 0
+    bad = times[~near]
+    which = np.searchsorted(good, bad)
+    spans = [np.ptp(bad[which == number]) for number in np.unique(which)]
+    return float(max(spans, default=0.0))
