@@ -1,15 +1,30 @@
 """What all tests share."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 from hypothesis import settings
+from jaxtyping import config
 
 settings.register_profile("murkscan", deadline=None)  # a slow machine is no fault of the code
 settings.load_profile("murkscan")
 SHARED = Path(__file__).resolve().parents[2] / "shared"
 DATA, FAULTS = SHARED / "data", SHARED / "faults"
+RUNS = ("cli", "report", "studio", "survey")
+"""Folders whose tests run what rooms do together; the rooms' own tests check the types."""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _check_types(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Check types and shapes of arrays, but for whole runs and tests that are marked.
+
+    These call small functions so often that checking them would be half of the time.
+    """
+    is_marked = request.node.get_closest_marker("without_types") is not None
+    config.update("jaxtyping_disable", request.path.parent.name in RUNS or is_marked)
+    yield
+    config.update("jaxtyping_disable", False)
 
 
 @pytest.fixture(scope="session")

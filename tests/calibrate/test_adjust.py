@@ -18,6 +18,8 @@ from murkscan.types.rig_covariance import RigCovariance, unit_of
 
 from .underwater import DOME, FAN, FLAT, SHEET, rig_behind, see_boards, see_stripes
 
+pytestmark = pytest.mark.without_types
+
 RIGS = [rig_behind(FLAT), rig_behind(DOME), rig_behind(FLAT, FAN), rig_behind(None)]
 FAR = {"px": 0.1, "m": 1e-4, "rad": 1e-4, "": 1e-4}
 """Steps ten times those of the code's own differences."""

@@ -13,6 +13,8 @@ from murkscan.types.water import Water
 from .boards import BOARD
 from .underwater import FLAT, SHEET, rig_behind, see_stripes
 
+pytestmark = pytest.mark.without_types
+
 RIG = rig_behind(FLAT, SHEET)
 NAMES = ("laser[0].normal[0]", "laser[0].distance", "camera.focal_length[0]", "water.index")
 COVARIANCE = RigCovariance(NAMES, np.diag([1e-3, 2e-4, 1.0, 2e-4]) ** 2)

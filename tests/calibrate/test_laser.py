@@ -20,6 +20,8 @@ from murkscan.types.water import Water
 from .boards import BOARD
 from .underwater import FAN, FLAT, SHEET, rig_behind, see_boards, see_stripes
 
+pytestmark = pytest.mark.without_types
+
 
 def as_photos(sightings):
     """Give sightings as the finders do: stripes and boards of the same photos."""

@@ -19,6 +19,8 @@ from murkscan.types.rig_covariance import RigCovariance
 from murkscan.types.trajectory import Trajectory
 from murkscan.types.water import Water
 
+pytestmark = pytest.mark.without_types
+
 BOARD = Chessboard(9, 6, 0.03)
 CAMERA = Camera((1280, 960), (1100.0, 1102.0), (640.0, 478.0), np.array([-0.1, 0.02, 0, 0, 0]))
 RIG = Rig(CAMERA)

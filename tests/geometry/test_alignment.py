@@ -12,6 +12,8 @@ from murkscan.types.cloud import PointCloud
 from murkscan.types.mesh import Mesh
 from murkscan.types.pose import Pose
 
+pytestmark = pytest.mark.without_types
+
 NOISE = 3e-4
 
 

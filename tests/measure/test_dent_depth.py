@@ -11,6 +11,8 @@ from murkscan.types.cloud import PointCloud
 from murkscan.types.dent import Dent
 from murkscan.types.deviation import Deviation
 
+pytestmark = pytest.mark.without_types
+
 SPACING, STEP = 2e-3, 1e-3
 """Distance between profiles, and along them [m]."""
 NOISE = 4e-5

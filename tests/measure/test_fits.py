@@ -22,6 +22,8 @@ from murkscan.types.plane import span_plane
 
 from .. import scans
 
+pytestmark = pytest.mark.without_types
+
 
 def sample_of(surface, *, within: float | None = None, **settings) -> Sample:
     cloud = scans.scan_cloud(surface, **settings)

@@ -27,6 +27,8 @@ from murkscan.types.quantity import Quantity
 
 from .. import scans
 
+pytestmark = pytest.mark.without_types
+
 SEEDS, NOISE = 40, 1e-4
 """Noise goes together over four profiles and ten scan lines, as that of a finder that joins."""
 HEIGHT, RADIUS = 0.01, 0.03

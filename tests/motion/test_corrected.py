@@ -21,6 +21,8 @@ from murkscan.types.trajectory import Trajectory
 
 from .adjust.test_adjust import SPEED, scan, swing
 
+pytestmark = pytest.mark.without_types
+
 
 def as_profile(one):
     """Give a pass as the camera saw it that is its vehicle."""

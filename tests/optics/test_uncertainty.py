@@ -23,6 +23,8 @@ from murkscan.types.rig import Rig
 from murkscan.types.rig_covariance import RigCovariance
 from murkscan.types.water import Water
 
+pytestmark = pytest.mark.without_types
+
 PORT = FlatPort(np.array([0.0, 0.0, 1.0]), 0.02, (Layer(0.01, 1.49),))
 CAMERA = Camera((1920, 1200), (1400.0, 1402.0), (959.5, 600.0), port=PORT)
 FAN = Fan.spread(

@@ -11,11 +11,11 @@ from ..types.profile import Profile
 
 T = TypeVar("T", Profile, PointCloud)
 
-BLOCK = 100_000
-"""Points of a block, about: with those beside it some 150 MB while outliers are looked for, and as
+BLOCK = 60_000
+"""Points of a block, about: with those beside it some 100 MB while outliers are looked for, and as
 many blocks are looked at together as there are workers."""
-_HALO = 30_000
-"""Points on either side of it that are looked at, too: forty profiles of 720 points."""
+_HALO = 20_000
+"""Points on either side of it that are looked at, too: 28 profiles of 720 points."""
 _PROFILES = 24
 """Profiles on either side, at least: a surface is evened out over eight."""
 

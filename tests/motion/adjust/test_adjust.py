@@ -10,6 +10,8 @@ from murkscan.motion.adjust.spline import Knots
 from murkscan.motion.adjust.ties import Ties, linearise
 from murkscan.types.navigation import Navigation, NavigationAccuracy, Readings
 
+pytestmark = pytest.mark.without_types
+
 DURATION, RATE, SPEED, STAND_OFF = 6.0, 20.0, 0.1, 0.6
 QUICK = AdjustSettings(fine_rounds=5)
 

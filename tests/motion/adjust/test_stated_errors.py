@@ -11,6 +11,8 @@ from murkscan.motion.adjust.ties import Ties
 from murkscan.motion.adjust.unknowns import Layout
 from murkscan.types.navigation import Navigation, NavigationAccuracy, Readings
 
+pytestmark = pytest.mark.without_types
+
 DURATION, SPEED, GAP = 8.0, 0.1, 0.08
 SEEDS, DRAWS = 24, 32
 SETTINGS = AdjustSettings()
