@@ -157,6 +157,15 @@ def test_a_stripe_that_creeps_by_a_part_of_a_row_stays_progressive(fault, name):
     assert open_recording(fault(f"video/{name}")).order == "progressive"
 
 
+def test_a_chapter_in_which_the_stripe_jumps_once_stays_progressive(fault, tmp_path, write_video):
+    files = sorted((fault("recording") / "frames").glob("*.png"))[:30]
+    chapter = [cv2.imread(str(file), cv2.IMREAD_GRAYSCALE) for file in files]
+    path = write_video(
+        tmp_path / "GH010042.mp4", chapter, codec="libx264", kept="yuv420p", options={"crf": "10"}
+    )
+    assert open_recording(path).order == "progressive"
+
+
 SLOW = """
 format = 1
 seed = 9

@@ -45,6 +45,9 @@ _FEWEST = 4
 """Runs over which such a stripe wanders, so that a faint lean to one side in all of them is none of
 its doing."""
 
+_JUMPS = 4.0
+"""Pairs of pictures that must share the motion, so that it is none of a few jumps."""
+
 _SPOTTY = 10.0
 """Fourth powers of differences over the square of their squares, from which they are spots."""
 _FRESH = 0.5
@@ -106,6 +109,7 @@ def find_field_order(runs: Iterable[Sequence[Image]]) -> FieldVerdict:
     """
     motion, lean = [np.zeros((2, len(_SCALES)))], [np.zeros((2, len(_SCALES)))]
     sums, moving = np.zeros((3, len(_SCALES))), np.zeros((2, len(_SCALES)))
+    pairs = [np.zeros(len(_SCALES))]
     snow = [np.zeros((0, 4))]
     for run in runs:
         motion.append(np.zeros_like(motion[0]))
@@ -113,17 +117,19 @@ def find_field_order(runs: Iterable[Sequence[Image]]) -> FieldVerdict:
         fields = (_shrink_fields(image) for image in run if min(image.shape) >= _ROWS)
         previous = next(fields, None)
         for current in fields:
+            pairs.append(np.zeros(len(_SCALES)))
             for scale, (old, new) in enumerate(zip(previous or (), current, strict=True)):
-                pairs = ((old[1], new[0]), (old[0], new[1]), (old[0], new[0]), (old[1], new[1]))
-                a, b, c, d, e = _differences((old, *pairs))
+                others = ((old[1], new[0]), (old[0], new[1]), (old[0], new[0]), (old[1], new[1]))
+                a, b, c, d, e = _differences((old, *others))
                 moving[:, scale] += _sums_that_move(a, (d + e) / 2)
                 motion[-1][:, scale] += _sums(b + c - 2 * a)
+                pairs[-1][scale] = float((b + c - 2 * a).sum())
                 lean[-1][:, scale] += _sums(c - b)
                 sums[:, scale] += float(a.sum()), float(b.sum()), float(c.sum())
             if previous:
                 snow.append(_look_for_snow(previous[0], current[0]))
             previous = current
-    verdict = _judge(np.array(motion), np.array(lean), sums, moving)
+    verdict = _judge(np.array(motion), np.array(lean), sums, moving, np.array(pairs))
     return "interlaced" if verdict == "undecided" and _is_snow(np.concatenate(snow)) else verdict
 
 
@@ -213,7 +219,11 @@ def _sums(values: Field) -> tuple[float, float]:
 
 
 def _judge(
-    motions: np.ndarray, leans: np.ndarray, sums: np.ndarray, moving: np.ndarray
+    motions: np.ndarray,
+    leans: np.ndarray,
+    sums: np.ndarray,
+    moving: np.ndarray,
+    pairs: np.ndarray,
 ) -> FieldVerdict:
     """Decide at the scale where motion stands out most.
 
@@ -222,6 +232,7 @@ def _judge(
         leans: c - b, likewise.
         sums: a, b and c of all runs together, at each scale.
         moving: a and d of all runs together, in cells that move, at each scale.
+        pairs: The sum of b + c - 2a of each pair of pictures, at each scale.
     """
     motion, lean = motions.sum(axis=0), leans.sum(axis=0)
     clear = motion[0] / np.sqrt(motion[1] + 1e-9)
@@ -237,11 +248,22 @@ def _judge(
         return "progressive"
     num_runs = len(motions) - 1  # the first stands for none
     faint = abs(sums[2, best] - sums[1, best]) < _FAINT * (sums[1, best] + sums[2, best])
-    if moving[0, best] > _DETAIL * moving[1, best]:
+    if moving[0, best] > _DETAIL * moving[1, best] or _are_jumps(pairs[:, best]):
         return "undecided"
     if certain < _SIGNIFICANT or (faint and num_runs < _FEWEST):
         return "undecided"
     return "top-first" if ratio > 0 else "bottom-first"
+
+
+def _are_jumps(motion: np.ndarray) -> bool:
+    """Tell whether hardly a pair of pictures has all of the motion.
+
+    A stripe that jumps at a step of the object does so before or after either field; which, the
+    next jump would tell otherwise.
+    """
+    moves = np.abs(motion[motion != 0])
+    alike = float(moves.sum() ** 2 / max((moves**2).sum(), 1e-300))
+    return alike < min(_JUMPS, len(moves) / 2)
 
 
 def _agree(motions: np.ndarray, leans: np.ndarray, ratio: float) -> bool:
