@@ -172,6 +172,15 @@ def test_a_saturated_stripe_keeps_its_centre(extractor):
     assert abs(errors.mean()) < 0.02
 
 
+@pytest.mark.parametrize("extractor", [*CLASSICAL, ThresholdSkeleton()], ids=_name)
+def test_what_is_too_faint_in_8_bits_is_so_in_12(extractor):
+    """A bright stripe, and one of 6 of 255 grey levels beside it, hardly any noise."""
+    light = _picture(peak=200.0, noise=0.3).astype(float)
+    light += 6 * np.exp(-0.5 * ((np.arange(WIDTH)[:, None] - 90) / 2) ** 2)
+    in_8, in_12 = np.rint(light).astype(np.uint8), np.rint(16 * light).astype(np.uint16)
+    assert len(_extract(extractor, in_8)) == len(_extract(extractor, in_12)) == LENGTH
+
+
 @pytest.mark.parametrize("extractor", [GrayGravity(), GaussianFit()], ids=_name)
 def test_a_sloping_background_does_not_pull_the_centre(extractor):
     """Glow that falls by 1.2 grey levels a pixel, under a stripe of 100.

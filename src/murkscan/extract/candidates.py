@@ -32,7 +32,7 @@ class Candidates:
     half_width: float
     """Half the width of a stripe, at its foot [px]."""
     min_height: float
-    """Grey levels by which a peak must rise above both of its sides."""
+    """Grey levels, of 8 bits, by which a peak must rise above both of its sides."""
     min_contrast: float
     """The same, in standard deviations of the noise."""
 
@@ -47,7 +47,7 @@ class Candidates:
 
     def rise(self, background: Background) -> float:
         """Give the height that a stripe must have [grey levels]."""
-        return max(self.min_height, self.min_contrast * background.noise)
+        return max(self.min_height * background.scale, self.min_contrast * background.noise)
 
     def extract(
         self,

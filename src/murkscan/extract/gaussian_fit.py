@@ -33,7 +33,7 @@ class GaussianFit(AbstractExtractor):
     half_width: float = 10.0
     """Half the window [px]: about four times the stripe's own standard deviation."""
     min_height: float = 10.0
-    """Grey levels by which a peak must rise above both of its sides."""
+    """Grey levels, of 8 bits, by which a peak must rise above both of its sides."""
     min_contrast: float = 5.0
     """The same, in standard deviations of the noise."""
 

@@ -36,7 +36,7 @@ class GrayGravity(AbstractExtractor):
     foot: float = 0.25
     """Share of the peak's height at which the stripe's width is taken."""
     min_height: float = 10.0
-    """Grey levels by which a peak must rise above both of its sides."""
+    """Grey levels, of 8 bits, by which a peak must rise above both of its sides."""
     min_contrast: float = 5.0
     """The same, in standard deviations of the noise."""
 

@@ -23,7 +23,7 @@ _APART = 3
 
 
 def learn_noise(frames: Sequence[Frame]) -> Background:
-    """Estimate the standard deviation of one pixel's noise.
+    """Estimate the standard deviation of one pixel's noise, and how much a grey level is.
 
     Within a frame, second differences along rows hold noise and texture; between frames,
     differences hold noise and motion. Medians keep the stripe out of both, and the smaller of the
@@ -46,7 +46,13 @@ def learn_noise(frames: Sequence[Frame]) -> Background:
         if first.image.shape == second.image.shape
     ]
     noise = min(within, np.median(pairs)) if pairs else within
-    return Background(noise=max(float(noise), _QUANTISATION))
+    return Background(noise=max(float(noise), _QUANTISATION), scale=_find_scale(frames))
+
+
+def _find_scale(frames: Sequence[Frame]) -> float:
+    """Tell from the bits that the pictures use how much a grey level is."""
+    brightest = max(int(frame.image.max(initial=0)) for frame in frames)
+    return float(2 ** max(brightest.bit_length() - 8, 0))
 
 
 def _noise_within(image: Image) -> float:

@@ -35,7 +35,7 @@ class Steger(AbstractExtractor):
     width: float = 2.0
     """Standard deviation of the smoothing [px]: at least that of the stripe, over the root of 3."""
     min_height: float = 10.0
-    """Grey levels by which a peak must rise above both of its sides."""
+    """Grey levels, of 8 bits, by which a peak must rise above both of its sides."""
     min_contrast: float = 5.0
     """The same, in standard deviations of the noise."""
 

@@ -38,7 +38,8 @@ class ThresholdSkeleton(AbstractExtractor):
     level: float = OTSU
     """Grey level above which a pixel is stripe; 0 takes Otsu's, for each frame."""
     min_height: float = 10.0
-    """Grey levels by which the stripe must exceed the rest, on average, under Otsu's level."""
+    """Grey levels, of 8 bits, by which the stripe must exceed the rest, on average, under Otsu's
+    level."""
     min_contrast: float = 8.0
     """The same, in standard deviations of the noise."""
 
@@ -76,7 +77,7 @@ class ThresholdSkeleton(AbstractExtractor):
         level, _ = cv2.threshold(image, 0, 0, cv2.THRESH_BINARY | cv2.THRESH_OTSU)
         above = image > level
         # Otsu's level parts any picture in two, noise as well: a stripe must be brighter than that.
-        least = max(self.min_height, self.min_contrast * background.noise)
+        least = max(self.min_height * background.scale, self.min_contrast * background.noise)
         if above.all() or not above.any() or image[above].mean() - image[~above].mean() < least:
             return np.zeros(image.shape, bool)
         return above

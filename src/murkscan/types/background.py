@@ -161,6 +161,8 @@ class Background(ShortRepr):
     """How murky the water is, where the glow tells."""
     remarks: tuple[str, ...] = ()
     """What is odd about the recording, with its cure; sentences for the user."""
+    scale: float = 1.0
+    """Grey levels that are as much as one of 8 bits: 16, where the pictures use 12 bits."""
 
     @property
     def water(self) -> Attenuation | None:
