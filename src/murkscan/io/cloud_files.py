@@ -18,6 +18,8 @@ from .xyz import iterate_xyz, writing_csv, writing_xyz
 
 CLOUD_SUFFIXES = (".ply", ".las", ".laz", ".e57", ".xyz", ".csv")
 """The formats that are read and written."""
+_OTHER_TEXTS = (".txt", ".asc", ".pts")
+"""Other names of text files, as CloudCompare and scanners write them, which are only read."""
 
 _Writing = AbstractContextManager[Callable[[PointCloud], None]]
 _WRITERS: dict[str, Callable[[Path], _Writing]] = {
@@ -62,7 +64,8 @@ def iterate_cloud_file(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud
     Columns that the file does not have say nothing: no normals, signal 0, posterior 1, sigma 0.
 
     Args:
-        path: The file; its suffix is one of .ply, .las, .laz, .e57, .xyz and .csv.
+        path: The file; its suffix is one of .ply, .las, .laz, .e57, .xyz, .csv, or of another text:
+            .txt, .asc, .pts.
         block: Points at a time, at most.
 
     Raises:
@@ -70,13 +73,13 @@ def iterate_cloud_file(path: Path, *, block: int = BLOCK) -> Iterator[PointCloud
         FormatError: The file is not what its suffix says, or damaged; memory stays bounded.
         FileNotFoundError: There is no such file.
     """
-    check_cloud_suffix(path)
+    check_cloud_to_read(path)
     suffix = path.suffix.lower()
     if suffix == ".ply":
         return iterate_ply(path, block=block)
     if suffix == ".e57":
         return iterate_e57(path, block=block)
-    if suffix in (".xyz", ".csv"):
+    if suffix in (".xyz", ".csv", *_OTHER_TEXTS):
         return iterate_xyz(path, block=block)
     return iterate_las(path, block=block)
 
@@ -98,13 +101,23 @@ def load_cloud_file(path: Path) -> PointCloud:
 
 
 def check_cloud_suffix(path: Path) -> None:
-    """Refuse now what reading or writing would refuse after an hour of other work.
+    """Refuse now what writing would refuse after an hour of other work.
 
     Raises:
         InputError: The suffix is none of a cloud.
     """
-    suffix = path.suffix.lower()
-    if suffix not in CLOUD_SUFFIXES:
-        raise InputError(
-            f"{path} has no suffix of a cloud; give one of {', '.join(CLOUD_SUFFIXES)}."
-        )
+    _check(path, CLOUD_SUFFIXES)
+
+
+def check_cloud_to_read(path: Path) -> None:
+    """Refuse now what reading would refuse after an hour of other work.
+
+    Raises:
+        InputError: The suffix is none of a cloud.
+    """
+    _check(path, (*CLOUD_SUFFIXES, *_OTHER_TEXTS))
+
+
+def _check(path: Path, suffixes: tuple[str, ...]) -> None:
+    if path.suffix.lower() not in suffixes:
+        raise InputError(f"{path} has no suffix of a cloud; give one of {', '.join(suffixes)}.")

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..errors import InputError, MissingResult
 from ..io.checksum import mark_file
-from ..io.cloud_files import check_cloud_suffix, iterate_cloud_file
+from ..io.cloud_files import check_cloud_to_read, iterate_cloud_file
 from ..io.values import as_plain
 from ..optics.merged_errors import SeenPass
 from ..types.cloud import PointCloud
@@ -81,7 +81,7 @@ class PassSource:
             raise MissingResult(f"{self.path} does not exist; give a scan's folder or a cloud.")
         path = _relative(self.path, out)
         if not self.path.is_dir():
-            check_cloud_suffix(self.path)
+            check_cloud_to_read(self.path)
             identity = mark_file(self.path).blake2b
             if self.unit != 1.0:
                 identity += f" in {self.unit:g} m"
