@@ -65,11 +65,34 @@ def test_the_map_opens_where_geotiff_does(wall):
     assert values[values > -9999].max() == pytest.approx(0.03, abs=1e-3)
 
 
+def test_a_cylinder_that_is_given_shows_all_of_a_bulge(tmp_path):
+    along, y = (grid.ravel() for grid in np.mgrid[-0.3:0.3:0.01, -1:1:0.01])
+    bulge = 0.02 * np.exp(-(along**2 + y**2) / (2 * 0.3**2))
+    angle, reach = along / 0.8, 0.8 + bulge
+    out = np.stack([np.sin(angle), 0 * angle, -np.cos(angle)], axis=1)
+    points = reach[:, None] * out + np.stack([0 * y, y, 0 * y + 2.0], axis=1)
+    np.savetxt(tmp_path / "pile.xyz", np.concatenate([points, out], axis=1), "%.7f")
+    folder = tmp_path / "out"
+    assert run(["merge", str(tmp_path / "pile.xyz"), "--out", str(folder)]) == 0
+    built = ("--point-m=0,0.3,2", "--axis=0,-5,0", "--radius-mm=800")
+    assert run(["measure", str(folder), "wall", *built, "--strip-mm=60", "--sections=5"]) == 0
+    told = json.loads((folder / "measure/wall.json").read_text("utf-8"))["details"]
+    assert told["radius_m"] == pytest.approx(0.8)
+    with (folder / "measure" / "wall-curves.csv").open() as file:
+        rows = [{k: float(v or "nan") for k, v in row.items()} for row in csv.DictReader(file)]
+    for row in rows:
+        away = np.arctan2(row["x_m"], 2 - row["z_m"]) * 0.8
+        truth = 20 * np.exp(-(away**2 + row["y_m"] ** 2) / (2 * 0.3**2))
+        assert abs(row["distance_mm"] - truth) < 0.2  # half a cell on the bulge's flank
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [
         (("--cell-mm", "0"), "--cell-mm must be above 0"),
         (("--point-m", "0,0,1"), "together"),
+        (("--shape", "cylinder", "--axis", "0,1,0"), "--axis and --radius-mm together"),
+        (("--point-m=0,0,9", "--axis=0,1,0", "--radius-mm=0"), "--radius-mm must be above 0"),
         (("--up", "0,0,1"), "--up"),
         (("--sections", "-1"), "--sections"),
         (("--cell-mm", "0.01", "--sections", "0"), "larger --cell-mm"),

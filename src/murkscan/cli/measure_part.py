@@ -16,6 +16,7 @@ from .words import print_table, say, tell
 
 if TYPE_CHECKING:
     from ..measure import Selection
+    from ..types.cylinder import Cylinder
     from ..types.measurement import Measurement
     from ..types.plane import Plane
     from ..types.quantity import Quantity
@@ -87,12 +88,30 @@ def read_plane(point_m: str, normal: str) -> "Plane":
 
     from ..types.plane import Plane
 
-    direction = np.array(_read_three("--normal", normal))
-    if not direction.any():
-        raise InputError("--normal 0,0,0 is no direction; give one such as 0,1,0.")
-    # Of numbers near the ends of their range the squares have none.
-    direction /= np.abs(direction).max()
+    direction = np.array(_read_direction("--normal", normal))
     return Plane.through(np.array(read_place("--point-m", point_m)), direction)
+
+
+def read_cylinder(point_m: str, axis: str, radius_mm: float) -> "Cylinder":
+    """Read a cylinder from --point-m, --axis and --radius-mm."""
+    import numpy as np
+
+    from ..types.cylinder import Cylinder
+
+    if not 0 < radius_mm < float("inf"):
+        raise InputError(f"--radius-mm must be above 0, got {radius_mm:g}.")
+    direction = np.array(_read_direction("--axis", axis))
+    point = np.array(read_place("--point-m", point_m))
+    return Cylinder(point, direction / np.linalg.norm(direction), radius_mm / 1e3)
+
+
+def _read_direction(flag: str, text: str) -> tuple[float, float, float]:
+    direction = _read_three(flag, text)
+    largest = max(map(abs, direction))
+    if not largest:
+        raise InputError(f"{flag} 0,0,0 is no direction; give one such as 0,1,0.")
+    # Of numbers near the ends of their range the squares have none.
+    return _three(part / largest for part in direction)
 
 
 def _read_three(flag: str, text: str) -> tuple[float, float, float]:

@@ -1,14 +1,25 @@
 """murkscan measure wall: the elevation of a wall, curves through it, and its anomalies."""
 
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
 from ..errors import InputError
-from .measure_part import CloudScan, PartFlags, print_measurement, read_place, read_plane
+from .measure_part import (
+    CloudScan,
+    PartFlags,
+    print_measurement,
+    read_cylinder,
+    read_place,
+    read_plane,
+)
 from .options import MaybePlace
 from .typed import WORDS
 from .words import tell
+
+if TYPE_CHECKING:
+    from ..types.cylinder import Cylinder
+    from ..types.plane import Plane
 
 _LENGTHS = ("--cell-mm", "--strip-mm")
 
@@ -19,6 +30,8 @@ def wall(
     shape: Literal["plane", "cylinder"] = "plane",
     point_m: MaybePlace = None,
     normal: MaybePlace = None,
+    axis: MaybePlace = None,
+    radius_mm: float | None = None,
     up: MaybePlace = None,
     cell_mm: float = 20.0,
     sections: int = 3,
@@ -30,17 +43,21 @@ def wall(
 ) -> None:
     """Draw a wall in elevation, with curves of how it bends and a list of what stands out.
 
-    Distances are taken from a plane or a cylinder that is fitted to the scan, or from a plane that
-    is given with --point-m and --normal.
+    Distances are taken from a plane or a cylinder that is fitted to the scan, or from one that is
+    given: a plane by --point-m and --normal, a cylinder by --point-m, --axis and --radius-mm.
 
     Parameters
     ----------
     shape
         What is fitted.
     point_m
-        A point of a plane that is given, as X,Y,Z [m].
+        A point of a plane, or of a cylinder's axis, that is given, as X,Y,Z [m].
     normal
-        Its normal, as X,Y,Z of any length, towards the viewer.
+        The plane's normal, as X,Y,Z of any length, towards the viewer.
+    axis
+        Direction of the cylinder's axis, as X,Y,Z of any length.
+    radius_mm
+        Radius of the cylinder [mm].
     up
         A direction that is about upwards, as X,Y,Z; that of the grid of a georeferenced scan, or of
         the camera's pictures, unless said.
@@ -60,14 +77,12 @@ def wall(
             raise InputError(f"{flag} must be above 0, got {value:g}.")
     if not least_mm >= 0 or not 0 <= sections <= 1000:
         raise InputError("--least-mm must be 0 or more, and --sections from 0 to 1000.")
-    if (point_m is None) != (normal is None) or (shape == "cylinder" and point_m is not None):
-        raise InputError("Give a plane with --point-m and --normal together, and no cylinder.")
     from ..project import Project
     from ..survey.wall import WallPlan, draw_elevation
 
     plan = WallPlan(
         shape=shape,
-        plane=None if point_m is None or normal is None else read_plane(point_m, normal),
+        given=_read_reference(shape, point_m, normal, axis, radius_mm),
         up=None if up is None else read_place("--up", up),
         cell=cell_mm / 1e3,
         sections=sections,
@@ -80,3 +95,24 @@ def wall(
     count = len(listed) if isinstance(listed, list) else 0
     tell("found", f"{count} parts off by more than {least_mm:g} mm, in {name}-anomalies.csv")
     print_measurement(out, name, found, suffixes=("png", "tif", "dxf"))
+
+
+def _read_reference(
+    shape: Literal["plane", "cylinder"],
+    point_m: str | None,
+    normal: str | None,
+    axis: str | None,
+    radius_mm: float | None,
+) -> "Plane | Cylinder | None":
+    """Read what distances are taken from; None: it is fitted."""
+    if point_m is None and normal is None and axis is None and radius_mm is None:
+        return None
+    is_round = axis is not None or radius_mm is not None
+    if point_m is not None and normal is not None and shape == "plane" and not is_round:
+        return read_plane(point_m, normal)
+    if point_m is None or normal is not None or axis is None or radius_mm is None:
+        raise InputError(
+            "Give a plane with --point-m and --normal together, or a cylinder with --point-m, "
+            "--axis and --radius-mm together."
+        )
+    return read_cylinder(point_m, axis, radius_mm)

@@ -12,12 +12,16 @@ from .sample import Sample
 
 Group = Int[np.ndarray, "_"]
 OfPieces = Int[np.ndarray, "pieces"]
-SharesOfPieces = Float[np.ndarray, "pieces"]
+ValuesOfPieces = Float[np.ndarray, "pieces"]
+SharesOfPairs = Float[np.ndarray, "lags lags"]
 
 _AROUND = 10.5
 """Cells on either side of a place whose points say how the curve runs there."""
-_TERMS = 6
-"""Numbers of the surface that does."""
+_TERMS, _BENDS = 6, 4
+"""Numbers of the surface that does, and of these, those of its bend with the height."""
+_ALIKE, _PER_LAG = 2, 40
+"""Pieces apart up to which errors may be alike: of the default finder those of profiles next to one
+another are by 0.6, two apart hardly; and pieces of a curve that tell each such lag."""
 _MOST_TAKEN = 0.75
 """Share that is believed, at most: pieces that stand nearly alone leave nothing to judge by."""
 _FEWEST = 8
@@ -55,8 +59,10 @@ def find_deflection(
 ) -> Deflection | None:
     """Follow a strip of the wall up its height.
 
-    Each place is the mean of the points of a piece of the strip. How it errs is told from how the
-    points lie about a curve that follows them smoothly, neighbours erring together.
+    Each place is the mean of the points of a piece of the strip, as it would be in the strip's
+    middle: where only a part of the strip was seen, how the wall leans along counts. How it errs is
+    told from how the points lie about a surface that follows them smoothly, neighbours erring
+    together.
 
     Args:
         sample: The scan's points.
@@ -73,76 +79,155 @@ def find_deflection(
     inside = inside[np.argsort(located[inside, 1], kind="stable")]
     height, distance = located[inside, 1], located[inside, 2]
     piece = np.floor(height / cell).astype(int)
-    _, first, counts = np.unique(piece, return_index=True, return_counts=True)
+    number, first, counts = np.unique(piece, return_index=True, return_counts=True)
     full = counts >= _FEWEST
     if not full.any():
         return None
-    errors, variances, taken = _scatter(located[inside], first, counts, cell)
+    found = _scatter(located[inside], first, counts, cell, along)
     groups = [np.arange(a, a + n) for a, n in zip(first[full], counts[full], strict=True)]
-    own = variances_of_means(groups, errors, variances, sample.profile[inside], sample.line[inside])
+    profile, line = sample.profile[inside], sample.line[inside]
+    own = variances_of_means(groups, found.errors, found.variances, profile, line)
+    left = np.array([found.errors[group].mean() for group in groups])
+    own *= 1 + counts[full] * found.lean_variances[full]
+    own *= _widen(left, own, number[full])
     return Deflection(
         along,
         np.array([height[group].mean() for group in groups]),
-        np.array([distance[group].mean() for group in groups]),
-        np.sqrt(own / (1 - taken[full])),
+        np.array([distance[group].mean() for group in groups]) - found.lean[full],
+        np.sqrt(own),
         _common(sample, located, frame, [inside[group] for group in groups]),
         counts[full],
     )
 
 
-def _scatter(
-    located: Points, first: OfPieces, counts: OfPieces, cell: float
-) -> tuple[Scalars, Scalars, SharesOfPieces]:
-    """Give how far each point lies from a smooth surface, and the variance of the points around.
+@dataclass(frozen=True, eq=False)
+class _Scatter:
+    """How points lie about a surface that follows the strip smoothly."""
 
-    The surface follows a piece's own error a little; the last numbers are the share of the variance
-    of each piece's mean that is lost by that.
+    errors: Scalars
+    """Distance of each point from it [m]."""
+    variances: Scalars
+    """Variance of the points around each [m²]."""
+    lean: ValuesOfPieces
+    """How far each piece's mean is off because its points lie aside of the strip's middle [m]."""
+    lean_variances: ValuesOfPieces
+    """Variance of that, as a share of the variance of a point."""
+
+
+def _scatter(
+    located: Points, first: OfPieces, counts: OfPieces, cell: float, along: float
+) -> _Scatter:
+    """Fit a surface round each piece.
 
     Args:
         located: The strip's points, from below upwards [m].
         first: The first point of each piece.
         counts: Points of each piece.
         cell: Height of a piece [m].
+        along: Middle of the strip [m].
     """
     errors, variances = np.zeros(len(located)), np.zeros(len(located))
-    taken = np.zeros(len(first))
+    lean = np.zeros((len(first), 2))
     for number, (start, count) in enumerate(zip(first, counts, strict=True)):
-        middle = float(located[start : start + count, 1].mean())
+        middle = located[start : start + count].mean(axis=0)
         ends = np.searchsorted(
-            located[:, 1], [middle - _AROUND * cell, middle + _AROUND * cell]
+            located[:, 1], [middle[1] - _AROUND * cell, middle[1] + _AROUND * cell]
         ).tolist()
         around = slice(*ends)
         mine = slice(start - ends[0], start - ends[0] + count)
-        left, taken[number] = _leave(located[around], middle, cell, mine)
+        left, slope = _leave(located[around], float(middle[1]), cell)
         errors[start : start + count] = left[mine]
         degrees = max(len(left) - _TERMS, 1)
         variances[start : start + count] = (left**2).sum() / degrees
-    return errors, variances, taken
+        aside = (middle[0] - along) / cell
+        lean[number] = aside * slope[0], aside**2 * slope[1]
+    return _Scatter(errors, variances, *lean.T)
 
 
-def _leave(located: Points, middle: float, cell: float, mine: slice) -> tuple[Scalars, float]:
+def _leave(located: Points, middle: float, cell: float) -> tuple[Scalars, tuple[float, float]]:
     """Give what a surface leaves that bends with the height and leans along the wall.
 
-    And the share of the variance of the mean of some points that it takes.
-
-    References:
-        Belsley, Kuh and Welsch, Regression Diagnostics, 1980, section 2.1 (leverage).
+    And how it leans there, a cell, with the variance of that over the variance of a point.
     """
     x = (located[:, 0] - located[:, 0].mean()) / cell
     y = (located[:, 1] - middle) / cell
     terms = np.stack([np.ones_like(x), y, y * y, y**3, x, x * y], axis=1)
-    if len(located) <= _FEWEST:
-        terms = terms[:, :1]
+    is_bare = len(located) <= _FEWEST
+    terms = terms[:, :1] if is_bare else terms
     inverse = np.linalg.pinv(terms.T @ terms, hermitian=True)
-    left = located[:, 2] - terms @ (inverse @ (terms.T @ located[:, 2]))
-    mean = terms[mine].mean(axis=0)
-    share = float(mean @ inverse @ mean) * (mine.stop - mine.start)
-    return left, min(share, _MOST_TAKEN)
+    found = inverse @ (terms.T @ located[:, 2])
+    slope = (0.0, 0.0) if is_bare else (float(found[4]), float(inverse[4, 4]))
+    return located[:, 2] - terms @ found, slope
+
+
+def _widen(left: ValuesOfPieces, own: ValuesOfPieces, piece: OfPieces) -> ValuesOfPieces:
+    """Give the factor on the variance of each piece's mean, by what the pieces themselves show.
+
+    The surface follows a piece's own error, and the more so if its neighbours err alike, as finders
+    do that look at several pictures together: then little of it is left. How alike pieces err that
+    are next to one another is told from what is left of them, through what the surface takes of
+    each such pair.
+
+    Args:
+        left: What is left of each piece's mean [m].
+        own: Variance that its points tell of it [m²].
+        piece: Number of each, from below.
+
+    References:
+        Belsley, Kuh and Welsch, Regression Diagnostics, 1980, section 2.1 (what a fit takes).
+    """
+    lags = min(_ALIKE, len(piece) // _PER_LAG)
+    told = left / np.sqrt(np.maximum(own, 1e-300))
+    seen = np.array([_products(told, piece, lag) for lag in range(lags + 1)])
+    if not lags:
+        seen[0] = 1.0
+    alike = np.linalg.lstsq(_what_is_left(lags), seen, rcond=None)[0]
+    # Neighbours that err alike can only have hidden more, not less.
+    ratios = np.clip(alike[1:] / max(alike[0], 1e-300), -1.0, 1.0)
+    follow = [_share_left(piece - number, ratios) for number in piece.tolist()]
+    return seen[0] / np.maximum(follow, 1 - _MOST_TAKEN)
+
+
+def _products(told: ValuesOfPieces, piece: OfPieces, lag: int) -> float:
+    """Give the mean product of pieces that are so far apart."""
+    _, first, second = np.intersect1d(piece, piece - lag, return_indices=True)
+    return float(np.mean(told[first] * told[second])) if len(first) else 0.0
+
+
+def _what_is_left(lags: int) -> SharesOfPairs:
+    """Give what is left of the products at each lag, for errors that are alike at each lag."""
+    reach = int(_AROUND)
+    number = np.arange(-2 * reach - lags, 2 * reach + lags + 1)
+    takes = np.array(
+        [_taken(number, at) for at in range(lags + 1)]
+    )  # one row a piece: what is left of it, as weights of all errors
+    apart = np.abs(number[:, None] - number)
+    return np.array(
+        [[float(takes[0] @ (apart == lag) @ takes[at]) for lag in range(lags + 1)]
+         for at in range(lags + 1)]
+    )  # fmt: skip
+
+
+def _taken(number: OfPieces, at: int) -> ValuesOfPieces:
+    """Give the weights of the errors of pieces in what the surface leaves of one of them."""
+    y = (number - at).astype(float)
+    near = np.abs(y) <= _AROUND
+    terms = np.where(near, y ** np.arange(_BENDS)[:, None], 0.0)
+    return (y == 0) - np.linalg.pinv(terms @ terms.T, hermitian=True)[0] @ terms
+
+
+def _share_left(away: OfPieces, ratios: Scalars) -> float:
+    """Give the share of the variance of a piece's error that the surface leaves of it."""
+    near = away[np.abs(away) <= _AROUND]
+    weights = _taken(near, 0)
+    apart = np.abs(near[:, None] - near)
+    alike = np.concatenate([[1.0], ratios, [0.0]])[np.minimum(apart, len(ratios) + 1)]
+    return float(weights @ alike @ weights)
 
 
 def _common(
     sample: Sample, located: Points, frame: WallFrame, groups: list[Group]
-) -> SharesOfPieces | None:
+) -> ValuesOfPieces | None:
     """Give how far the errors that the scan shares move each place out of the wall [m]."""
     if sample.shifts is None:
         return None
