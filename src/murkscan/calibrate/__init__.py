@@ -8,6 +8,8 @@ from .board.contrast import white_of_board as white_of_board
 from .board.corners import find_board as find_board
 from .board.coverage import BoardCoverage as BoardCoverage
 from .board.coverage import cover as cover
+from .board.marker import find_markers as find_markers
+from .board.marker import load_dictionary as load_dictionary
 from .board.pose import locate_seen_board as locate_seen_board
 from .board.stripe import StripeOnBoard as StripeOnBoard
 from .board.view import BoardView as BoardView

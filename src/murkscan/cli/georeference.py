@@ -7,12 +7,18 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Parameter
 
 from ..errors import InputError
-from .paths import ScanFolder
+from .options import RecordingFlags
+from .paths import RecordingPaths, ScanFolder
+from .progress import progress_bars
 from .typed import WORDS
 from .words import print_table, tell
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ..capture import AbstractRecording
     from ..project import GeoreferenceResult
+    from ..project.results import MarkerResult
     from ..types.hull import HullFrame
 
 
@@ -33,6 +39,9 @@ def georeference(
     frame_spacing_mm: float | None = None,
     frames_from: Literal["stern", "bow"] | None = None,
     heights_above: Literal["keel", "waterline"] | None = None,
+    markers: str = "4X4_50",
+    recording: RecordingPaths = (),
+    reading: RecordingFlags = RecordingFlags(),
 ) -> None:
     """Lay a scan on control points, of a coordinate system or of a ship.
 
@@ -45,35 +54,51 @@ def georeference(
         Folder of the scan, with a finished cloud stage.
     control
         A table with the columns name, easting_m, northing_m, height_m, sigma_mm, and x_m, y_m, z_m:
-        where each point lies on the model, as read off view/index.html.
+        where each point lies on the model, as read off view/index.html; or in place of these
+        marker: the number of an ArUco marker or AprilTag whose middle the point is, and which the
+        laser's line has crossed.
     crs
         The coordinate system, as EPSG:25832, or with that of the heights as EPSG:25832+7837.
     hull
         Instead of these: a table of three points or more of a ship, with the columns name, frame
         (or from_bow_m), height_m, from_centreline_m, side (port, starboard, centreline), sigma_mm,
-        and x_m, y_m, z_m.
+        and x_m, y_m, z_m or marker.
     frame_spacing_mm
         Distance between two frames of the ship [mm]; without it the table has from_bow_m.
     frames_from
         Where frame 0 is; stern unless said.
     heights_above
         What heights on the ship count from; keel unless said.
+    markers
+        Dictionary of the markers, as OpenCV calls it: 4X4_50, APRILTAG_36h11, ...
+    recording
+        The recording that was scanned, where it has been moved since.
     """
-    from ..project import Project
+    from ..project import Project, load_recording, load_scan_rig
     from ..survey.georeference import OnGrid
     from ..survey.georeference import georeference as lay
+    from ..survey.markers import MarkerSearch
 
+    project = Project(out, WORDS.get())
     ship = (frame_spacing_mm, frames_from, heights_above)
+    target: OnGrid | HullFrame
     if hull is not None and control is None and crs is None:
-        frame = _read_hull(frame_spacing_mm, frames_from or "stern", heights_above or "keel")
-        result = lay(Project(out, WORDS.get()), hull, frame)
+        table = hull
+        target = _read_hull(frame_spacing_mm, frames_from or "stern", heights_above or "keel")
     elif hull is None and control is not None and crs is not None and not any(ship):
-        result = lay(Project(out, WORDS.get()), control, OnGrid(crs))
+        table, target = control, OnGrid(crs)
     else:
         raise InputError(
             "Give --control and --crs, for a place on the Earth; or for a ship --hull, with "
             "--frame-spacing-mm where its table has frames."
         )
+
+    def open_recording() -> "AbstractRecording":
+        paths = recording or (Path(load_recording(project).path),)
+        return reading.open(paths, load_scan_rig(project))
+
+    search = MarkerSearch(open_recording, markers, progress_bars)
+    result = lay(project, table, target, search=search)
     _print(out, result)
 
 
@@ -93,6 +118,8 @@ def _read_hull(
 
 def _print(out: Path, result: "GeoreferenceResult") -> None:
     axes = ("east", "north") if result.hull is None else ("aft", "to starboard")
+    if result.markers:
+        _print_markers(result.markers)
     columns = ("control point", *axes, "up [mm]", "sigma [mm]", "of its σ")
     rows = [
         (
@@ -113,3 +140,20 @@ def _print(out: Path, result: "GeoreferenceResult") -> None:
     if result.hull is not None:
         station = "--from-bow-m 12.5" if result.hull.frame_spacing is None else "--at-frame 42"
         tell("next", f"murkscan measure {folder} section {station}, across the ship there")
+
+
+def _print_markers(markers: "Sequence[MarkerResult]") -> None:
+    where = ("x [m]", "y [m]", "z [m]")
+    columns = ("control point", "marker", *where, "sigma [mm]", "pictures", "points on it")
+    rows = [
+        (
+            one.name,
+            str(one.marker),
+            *(f"{part:.4f}" for part in one.place),
+            f"{1e3 * one.sigma:.2f}",
+            str(one.pictures),
+            str(one.points),
+        )
+        for one in markers
+    ]
+    print_table("Markers on the model", columns, rows)

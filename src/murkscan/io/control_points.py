@@ -11,8 +11,11 @@ from ..types.arrays import Points, Scalars
 from ..types.hull import HullFrame
 from .text_table import TextTable, read_text_table
 
-_OF_ALL = ("sigma_mm", "x_m", "y_m", "z_m")
-"""Columns of every table, beside name and place."""
+_ON_MODEL = ("x_m", "y_m", "z_m")
+_OF_ALL = ("sigma_mm", *_ON_MODEL)
+"""Columns of every table, beside name and place; those of the model may be left out where a column
+"marker" tells."""
+_LARGEST_MARKER = 1_000_000
 _SIDES = (
     (("starboard", "stbd", "s"), 1.0),
     (("port", "p"), -1.0),
@@ -34,14 +37,17 @@ class ControlPoints:
     sigma: Scalars
     """Standard deviation along each of the three [m]."""
     on_model: Points
-    """Where each lies in the model's world [m]."""
+    """Where each lies in the model's world [m]; NaN where a marker tells."""
+    markers: tuple[int | None, ...]
+    """Number of the marker that tells where each lies; None where the table does."""
 
 
 def read_control_points(path: Path) -> ControlPoints:
     """Read a table of control points.
 
     Its first line names the columns, in any order: name, easting_m, northing_m, height_m, sigma_mm
-    (or sigma_m), and x_m, y_m, z_m, the place on the model. Others are passed over.
+    (or sigma_m), and x_m, y_m, z_m, the place on the model, or marker, the number of one that was
+    seen there. Others are passed over.
 
     Raises:
         FormatError: The file is missing or no such table; the message names the line.
@@ -55,7 +61,8 @@ def read_hull_points(path: Path, hull: HullFrame) -> ControlPoints:
 
     Its first line names the columns, in any order: name, frame (or from_bow_m, where no distance
     of the frames is given), height_m, from_centreline_m, side (port, starboard or centreline),
-    sigma_mm (or sigma_m), and x_m, y_m, z_m, the place on the model. Others are passed over.
+    sigma_mm (or sigma_m), and x_m, y_m, z_m, the place on the model, or marker, the number of one
+    that was seen there. Others are passed over.
 
     Args:
         path: The table.
@@ -92,6 +99,9 @@ class _Table:
         scale = 1e-3
         if "sigma_m" in names and "sigma_mm" not in names:
             names[names.index("sigma_m")], scale = "sigma_mm", 1.0
+        if "marker" in names:
+            wanted = tuple(name for name in wanted if name in names or name not in _ON_MODEL)
+            wanted = (*wanted, "marker")
         if missing := [name for name in wanted if name not in names]:
             unit = "; of sigma the unit must be said" if "sigma" in names else ""
             raise FormatError(
@@ -110,7 +120,20 @@ class _Table:
         if count and not (sigma > 0).all():
             line = self.table.lines[int(np.argmin(sigma > 0))]
             raise FormatError(f"{self.path} has a sigma that is not above 0 in line {line}.")
-        return ControlPoints(called, places, sigma, self.stack("x_m", "y_m", "z_m"))
+        rows = [self._on_model(row) for row in range(count)]
+        on_model = np.array([place for place, _ in rows], float).reshape(-1, 3)
+        return ControlPoints(called, places, sigma, on_model, tuple(marker for _, marker in rows))
+
+    def _on_model(self, row: int) -> tuple[list[float], int | None]:
+        """Give the place on the model that a row has, or the marker that tells it."""
+        marker = self.cell("marker", row) if "marker" in self.where else ""
+        is_placed = any(self.cell(name, row) for name in _ON_MODEL if name in self.where)
+        if not marker or is_placed:
+            return [self._number(name, row) for name in _ON_MODEL], None
+        if not marker.isdecimal() or int(marker) > _LARGEST_MARKER:
+            line = self.table.lines[row]
+            raise FormatError(f"{self.path} has {marker!r} for marker in line {line}: no number.")
+        return [float("nan")] * 3, int(marker)
 
     def stack(self, *names: str) -> Points:
         return np.stack([self.numbers(name) for name in names], axis=1)
@@ -136,6 +159,11 @@ class _Table:
         return cells[at]
 
     def _number(self, name: str, row: int) -> float:
+        if name not in self.where:
+            raise FormatError(
+                f"{self.path} has neither a marker nor {', '.join(_ON_MODEL)} in line "
+                f"{self.table.lines[row]}."
+            )
         cell = self.cell(name, row)
         try:
             value = float(cell)

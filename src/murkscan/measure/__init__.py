@@ -24,6 +24,10 @@ from .form import measure_flatness as measure_flatness
 from .form import measure_form as measure_form
 from .histogram import draw_histogram as draw_histogram
 from .lengths import require_dent_sizes as require_dent_sizes
+from .markers import MarkerPlace as MarkerPlace
+from .markers import MarkerSight as MarkerSight
+from .markers import MarkerView as MarkerView
+from .markers import place_marker as place_marker
 from .remarks import remark_on_smooth as remark_on_smooth
 from .sample import Sample as Sample
 from .section import cut_section as cut_section

@@ -263,9 +263,27 @@ class ControlResult:
     residual: tuple[float, ...] = field(metadata={"unit": "m"})
     """Control point less model, along east, north and up [m]."""
     sigma: float = field(metadata={"unit": "m"})
-    """As the file states it [m]."""
+    """As the file states it, with that of a marker's place on the model [m]."""
     standardised: float
     """Length of the residual in its own standard deviations; about 1.7 is usual."""
+
+
+@dataclass(frozen=True)
+class MarkerResult:
+    """Where the marker of a control point was seen."""
+
+    name: str
+    """Of the control point."""
+    marker: int
+    """Its number in its dictionary."""
+    place: tuple[float, ...] = field(metadata={"unit": "m"})
+    """Its middle on the model [m]."""
+    sigma: float = field(metadata={"unit": "m"})
+    """Standard deviation of that along each axis [m]."""
+    pictures: int
+    """Pictures that it is the mean of."""
+    points: int
+    """Points of the scan on it."""
 
 
 @dataclass(frozen=True)
@@ -292,6 +310,8 @@ class GeoreferenceResult:
     """What is odd, with its cure; sentences for the user."""
     hull: HullFrame | None = None
     """Of a model that was laid on a ship: the axes are then aft, to starboard and up."""
+    markers: tuple[MarkerResult, ...] = ()
+    """Of those points that markers give; `sigma` of the points has theirs."""
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from ..io.values import as_plain
 from ..project import CLOUD, GEOREFERENCE, GeoreferenceResult, Project, StageFiles
 from ..project.results import ControlResult
 from ..types.hull import HullFrame
+from .markers import MarkerSearch, place_markers
 from .progress import Progress, silent
 from .stage_runner import run_stage
 
@@ -47,7 +48,12 @@ class OnGrid:
 
 
 def georeference(
-    project: Project, control: Path, target: OnGrid | HullFrame, *, progress: Progress = silent
+    project: Project,
+    control: Path,
+    target: OnGrid | HullFrame,
+    *,
+    search: MarkerSearch,
+    progress: Progress = silent,
 ) -> GeoreferenceResult:
     """Run the georeference stage: lay the model on control points.
 
@@ -55,6 +61,7 @@ def georeference(
         project: A scan, or a merged cloud, with a finished cloud stage.
         control: The table of points; see `read_control_points`, and of a ship `read_hull_points`.
         target: A coordinate system on the Earth, or how places on a ship are told.
+        search: Where the markers of points without a place on the model are looked for.
         progress: Told when it begins and ends.
 
     Returns:
@@ -63,23 +70,29 @@ def georeference(
     Raises:
         MissingResult: The cloud stage has not been finished.
         FormatError: The table is none.
-        NotEnoughData: It has fewer than three points.
+        NotEnoughData: It has fewer than three points, or a marker was not seen.
         Degenerate: They lie on a line.
         InputError: There is no such coordinate system, or the points are not those of the model.
         MissingDependency: pyproj is not installed.
     """
+    settings: dict[str, object]
+    if isinstance(target, HullFrame):
+        points, settings = read_hull_points(control, target), {"hull": as_plain(target)}
+    else:
+        points, settings = read_control_points(control), {"crs": target.crs}
+    if any(marker is not None for marker in points.markers):
+        settings["markers"] = search.dictionary
     stage = project.stage(
         GEOREFERENCE,
-        settings=(
-            {"hull": as_plain(target)} if isinstance(target, HullFrame) else {"crs": target.crs}
-        ),
+        settings=settings,
         inputs={"cloud": project.finished(CLOUD).digest, "control": mark_file(control).blake2b},
     )
 
     def prepare() -> GeoreferenceResult:
+        placed, markers = place_markers(project, points, search)
         if isinstance(target, HullFrame):
-            return _lay_on_hull(project, read_hull_points(control, target), target)
-        return _lay_on_grid(read_control_points(control), target.crs)
+            return replace(_lay_on_hull(project, placed, target), markers=markers)
+        return replace(_lay_on_grid(placed, target.crs), markers=markers)
 
     def make(result: GeoreferenceResult) -> GeoreferenceResult:
         files = StageFiles(project.root / GEOREFERENCE.word)

@@ -8,6 +8,7 @@ import numpy as np
 from ...errors import InputError
 from ...types.arrays import Image, Indices, Pixels
 from .chessboard import Chessboard
+from .marker import load_dictionary, require_dictionary
 from .view import BoardView
 
 _MIN_CORNERS = 8
@@ -29,14 +30,7 @@ class Markers:
 
     def __post_init__(self) -> None:
         """Refuse a dictionary that OpenCV has not."""
-        if not hasattr(cv2.aruco, f"DICT_{self.dictionary}"):
-            known = sorted(
-                name[5:] for name in dir(cv2.aruco) if name.startswith(("DICT_4", "DICT_5"))
-            )
-            raise InputError(
-                f"There is no dictionary of markers {self.dictionary!r}; give the one that the "
-                f"board was printed with, such as {', '.join(known[:4])}."
-            )
+        require_dictionary(self.dictionary)
 
 
 def find_charuco(photo: Image, board: Chessboard, markers: Markers, *, name: str = "") -> BoardView:
@@ -77,7 +71,7 @@ def _detect(
     photo: Image, board: Chessboard, markers: Markers, is_legacy: bool
 ) -> tuple[Pixels, Indices]:
     """Let OpenCV find corners; boards printed by its old versions start with another colour."""
-    dictionary = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, f"DICT_{markers.dictionary}"))
+    dictionary = load_dictionary(markers.dictionary)
     size = (board.columns + 1, board.rows + 1)
     num_markers = size[0] * size[1] // 2
     if num_markers > len(dictionary.bytesList):
