@@ -18,6 +18,8 @@ from murkscan.types.pose import Pose
 
 BOARD = Chessboard(9, 6, 0.03)
 GREEN_BOARD = Chessboard(8, 6, 0.04)
+CUT_OFF = {"board_01.png", "board_05.png", "board_13.png"}
+"""Photos of underwater_line/air whose board runs out of the picture."""
 GREEN_MARGIN = Margin(left=0.115, right=0.08, top=0.06, bottom=0.065)
 """The white paper of that board beyond its squares, as far as the photos show it."""
 CAMERA = Camera((320, 240), (350.0, 350.0), (159.5, 119.5))
@@ -248,6 +250,17 @@ def test_the_chessboards_calibrate_to_the_known_rms(data, tmp_path):
     result = calibrate_camera_from_photos(data("chessboards"), BOARD, tmp_path / "rig.toml")
     assert len(result.calibration.sightings) == result.num_photos == 13
     assert result.calibration.rms <= 0.22
+
+
+def test_boards_that_the_picture_cuts_off_calibrate_to_the_authors_camera(data, tmp_path):
+    board = Chessboard(8, 7, 0.0338)
+    photos = data("underwater_line") / "air"
+    result = calibrate_camera_from_photos(photos, board, tmp_path / "rig.toml")
+    used = {sighting.name: len(sighting.corners) for sighting in result.calibration.sightings}
+    assert len(used) >= 6
+    assert {name for name, count in used.items() if count < 56} >= CUT_OFF
+    focal_length = np.array(result.calibration.rig.camera.focal_length)
+    assert np.abs(focal_length / [702.6, 703.5] - 1).max() < 0.01
 
 
 def test_the_green_laser_calibrates_to_the_known_sheet(data, tmp_path):
