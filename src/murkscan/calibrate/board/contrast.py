@@ -19,7 +19,9 @@ _NEIGHBOURHOOD = 41
 _BRIGHTER = 1.05
 """How much brighter than white paper a grey photo's stripe is at least: paper is grained."""
 _COLOURLESS = 4
-"""Difference of the channels below which a photo is grey."""
+"""Difference of the channels below which a pixel is grey."""
+_COLOURED = 1e-3
+"""Share of coloured pixels that compression puts into a grey photo."""
 
 
 def channel_of(wavelength: float) -> int:
@@ -62,8 +64,10 @@ def laser_contrast(image: ColourImage, wavelength: float, *, white: Vector) -> I
 
 def is_colourless(image: ColourImage) -> bool:
     """Tell whether a photo is grey: its three channels are equal but for compression."""
-    spread = image.max(axis=2).astype(np.int16) - image.min(axis=2)
-    return bool(np.percentile(spread, 99.9) < _COLOURLESS)
+    red, green, blue = cv2.split(image)
+    most, least = cv2.max(cv2.max(red, green), blue), cv2.min(cv2.min(red, green), blue)
+    coloured = int(np.count_nonzero(cv2.subtract(most, least) >= _COLOURLESS))
+    return coloured <= _COLOURED * most.size
 
 
 def white_of_board(image: ColourImage, view: BoardView, board: Chessboard) -> Vector:
