@@ -118,7 +118,7 @@ def run(name, case, seed):
         **{way: judge(points, dive) for way, points in zip(WAYS, placed, strict=True)},
         "pulls": length_pulls(dive, adjusted),
         "blind": adjusted.blind,
-        "sound": adjusted.seams.after <= adjusted.seams.before,
+        "seams": asdict(adjusted.seams),
         "seconds": seconds,
         "cpu": cpu,
         "gigabytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20,

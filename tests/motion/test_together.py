@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from murkscan.motion.adjust import Seams
 from murkscan.motion.correction_words import tell_correction_of_pass
 from murkscan.motion.together import LaidPass, correct_together
 from murkscan.types.measured import Measured
@@ -116,6 +117,8 @@ def test_a_pass_is_bent_to_what_its_neighbour_knows(together):
     assert second.num_tiles > 5
     assert second.is_sound
     assert second.seams.after < 0.5 * second.seams.before
+    torn = replace(second, seams=Seams(before=1e-3, after=2e-3))
+    assert not torn.is_sound
 
 
 def test_what_both_have_wrong_together_is_one_error(together):

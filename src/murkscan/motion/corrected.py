@@ -21,6 +21,9 @@ FEWEST = 20
 _BLIND = 1.5
 """Longest stretch [s] whose relief may lie on something else than its like: three tiles in a row.
 Beyond, the way has settled in a wrong place there (`docs/benchmarks/trajectory.md`)."""
+_WORSE = 1.2
+"""How far passes may lie apart where they overlap, in how far they did before: those that lay on
+one another already lie there again but for other pairs of facets and their noise."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +47,7 @@ class Correction:
     @property
     def is_sound(self) -> bool:
         """Whether it may be believed: it has not settled in a wrong place."""
-        return self.blind <= _BLIND and self.seams.after <= self.seams.before
+        return self.blind <= _BLIND and self.seams.after <= _WORSE * self.seams.before
 
 
 def correct_motion(
