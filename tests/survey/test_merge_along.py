@@ -25,6 +25,7 @@ from murkscan.survey.sample import load_sample
 from murkscan.types.camera import Camera
 from murkscan.types.laser import Laser
 from murkscan.types.rig import Rig
+from murkscan.types.rig_covariance import RigCovariance
 from murkscan.types.stripe import Stripe
 
 from ..motion.adjust.test_adjust import SPEED, swing
@@ -35,6 +36,9 @@ from ..projects import SCAN, finish
 RIG = Rig(
     Camera((240, 180), (318.0, 318.0), (119.5, 89.5)),
     (Laser.from_baseline_angle(0.2, np.arctan(3.0), "x"),),
+    covariance=RigCovariance(
+        ("laser[0].normal[0]", "camera.focal_length[1]"), np.diag([1e-6, 1.0])
+    ),
 )
 
 
@@ -108,8 +112,14 @@ def test_each_point_states_the_errors_of_all_ways(merged):
     shifts = sample.shifts(some)
     largest = np.linalg.eigvalsh(shifts @ shifts.transpose(0, 2, 1))[:, -1]
     np.testing.assert_allclose(sample.cloud.sigma_common[some], np.sqrt(largest), rtol=1e-3)
-    # Logs are known to 1 mm where they begin, to 1 mrad at 0.6 m; the overlap adds little.
-    assert 0.3e-3 < np.median(sample.cloud.sigma_common) < 3e-3
+    # Behind the two errors of the rig come those of all ways, each of which moves both passes; how
+    # they were laid on one another is in them.
+    way, times = project.load_trajectory(), sample.cloud.frame[some].astype(float)
+    by_ways = way.shifts(sample.cloud.points[some], times)
+    assert by_ways.shape[2] == 64
+    np.testing.assert_allclose(shifts[:, :, 2:66], by_ways, atol=1e-12)
+    np.testing.assert_array_equal(shifts[:, :, 66:], 0)
+    assert np.median(np.linalg.norm(shifts[:, 2, :2], axis=1)) > 1e-4
 
 
 def test_a_repeated_merge_is_skipped_and_one_that_was_killed_goes_on(merged, scans):
