@@ -50,7 +50,8 @@ def follow_chain(
             for j in range(counts[u - 1]):
                 none += death * ahead[u - 1, j]
         total += none
-        ahead[u] /= total
+        for k in range(counts[u]):  # an array that is set by another compiles for 2 s
+            ahead[u, k] /= total
         none_ahead[u] = none / total
         scale[u] = (scale[u - 1] if u else 0.0) + np.log(total)
     behind = _run_back(counts, evidence, links, scale, start, birth, death)

@@ -41,7 +41,9 @@ def sort_triangles(middles: np.ndarray) -> np.ndarray:
                 side = values.max() - values.min()
                 if side > longest:
                     widest, longest = axis, side
-            order[start:stop] = mine[np.argsort(middles[mine, widest])]
+            sorting = np.argsort(middles[mine, widest])
+            for i in range(stop - start):  # an array that is set by another compiles for 2 s
+                order[start + i] = mine[sorting[i]]
     return order
 
 
@@ -131,7 +133,8 @@ def _search(
             square = _square_to_triangle(point, triangles[j], tried)
             if square < best:
                 best, face = square, j
-                weights[:] = tried
+                for i in range(3):
+                    weights[i] = tried[i]
     return face, best
 
 
