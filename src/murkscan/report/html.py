@@ -1,6 +1,6 @@
 """The page that tells how a scan went."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from ..page import Block, Facts, Gallery, Note, Picture, Section, Table, format_cell, render_page
 from .charts import depth_chart, points_chart, signal_chart
@@ -36,48 +36,53 @@ _NO_MAP = (
 
 def as_html(summary: ScanSummary, heading: Heading = NO_HEADING) -> str:
     """Make report/index.html."""
-    sections = [
-        Section("", _headline(summary)),
-        Section("What was scanned", [Table(scanned_rows(summary))]),
-    ]
+    sections = [*_seen(summary), *_trusted(summary), *_left_out(summary), *_record(summary)]
+    subtitle = heading.subtitle(summary.recorded.name)
+    return render_page(heading.title or "Scan report", sections, subtitle=subtitle)
+
+
+def _seen(summary: ScanSummary) -> Iterator[Section]:
+    """Show what was scanned, how much of it was seen, and how well."""
+    yield Section("", _headline(summary))
+    yield Section("What was scanned", [Table(scanned_rows(summary))])
     views = [shown for shown in summary.pictures if not shown.is_frame]
     if views:
-        sections.append(Section("Pictures", [gallery(views, is_first_large=True)]))
+        yield Section("Pictures", [gallery(views, is_first_large=True)])
     if summary.coverage is not None:
-        sections.append(
-            Section(
-                "Coverage", coverage_blocks(summary.coverage, is_asked=summary.wanted is not None)
-            )
-        )
+        is_asked = summary.wanted is not None
+        yield Section("Coverage", coverage_blocks(summary.coverage, is_asked=is_asked))
     elif summary.num_points:
-        sections.append(Section("Coverage", [Note(_NO_MAP, "warning")]))
+        yield Section("Coverage", [Note(_NO_MAP, "warning")])
     if summary.speed is not None:
-        sections.append(Section("Speed and spacing", speed_blocks(summary.speed, summary)))
+        yield Section("Speed and spacing", speed_blocks(summary.speed, summary))
     if summary.num_points:
-        sections += [
-            Section("Signal and uncertainty", _distributions(summary)),
-            Section("Over time", _charts(summary)),
-        ]
+        yield Section("Signal and uncertainty", _distributions(summary))
+        yield Section("Over time", _charts(summary))
+
+
+def _trusted(summary: ScanSummary) -> Iterator[Section]:
+    """Show how far the model may be off, where it lies, and what that rests on."""
+    recorded = summary.recorded
     if summary.trust is not None:
         blocks = uncertainty_blocks(
-            summary.trust, motion=summary.recorded.motion, unstated=summary.recorded.unstated
+            summary.trust, motion=recorded.motion, unstated=recorded.unstated
         )
-        sections.append(Section("Uncertainty at 68 and 95 %", blocks))
-    sections += placed_sections(summary.model.placed)
-    sections += wall_sections(summary.model.walls)
-    if summary.recorded.correction:
-        notes = [Note(f"{words[0].upper()}{words[1:]}.") for words in summary.recorded.correction]
-        sections.append(Section("Trajectory", notes))
-    calibrated = calibration_blocks(summary.recorded.calibration, summary.steps)
-    sections.append(Section("Calibration", calibrated))
+        yield Section("Uncertainty at 68 and 95 %", blocks)
+    yield from placed_sections(summary.model.placed)
+    yield from wall_sections(summary.model.walls)
+    if recorded.correction:
+        notes = [Note(f"{words[0].upper()}{words[1:]}.") for words in recorded.correction]
+        yield Section("Trajectory", notes)
+    yield Section("Calibration", calibration_blocks(recorded.calibration, summary.steps))
+
+
+def _left_out(summary: ScanSummary) -> Iterator[Section]:
+    """Show the frames that were not read, and some of those that were."""
     if summary.recorded.skips:
-        sections.append(Section("Skipped frames", _skips(summary)))
+        yield Section("Skipped frames", _skips(summary))
     frames = [shown for shown in summary.pictures if shown.is_frame]
     if frames:
-        sections.append(Section("Frames", [gallery(frames)]))
-    subtitle = heading.subtitle(summary.recorded.name)
-    title = heading.title or "Scan report"
-    return render_page(title, sections + _record(summary), subtitle=subtitle)
+        yield Section("Frames", [gallery(frames)])
 
 
 def _record(summary: ScanSummary) -> list[Section]:
