@@ -9,7 +9,18 @@ _FAR = 12.0
 """Pixels a line beyond which only a jump can link."""
 
 
-@njit(cache=True, nogil=True)
+_DECAY = 64
+"""Parts that an exponent is cut into, so that a short series gives it: to 1e-9 down to e^-16, which
+compilers do for several numbers at once."""
+_LEAST = 16.0
+"""Exponent beyond which nothing is left beside anything over four e-folds."""
+_ANYTHING = 0.0375
+"""Density of a step in height that may be anything."""
+_FAST = {"reassoc", "contract", "nsz"}
+"""What compilers may do to sums: none of them is infinite."""
+
+
+@njit(cache=True, nogil=True, fastmath=_FAST, error_model="numpy")
 def follow_chain(
     positions: np.ndarray, heights: np.ndarray, counts: np.ndarray, grains: np.ndarray,
     evidence: np.ndarray, length: int, birth: float, death: float, miss: float, bends: np.ndarray,
@@ -31,20 +42,25 @@ def follow_chain(
     start = birth / length * 0.25
     ahead, none_ahead = np.zeros((num_lines, most)), np.zeros(num_lines)
     scale = np.zeros(num_lines)
+    faded = np.empty((_GAP, most))
     for u in range(num_lines):
         before = none_ahead[u - 1] if u else 1.0
         none = (1.0 - birth) * before
         first = start * before * (1.0 if u else 10.0)
+        reach = min(_GAP, u)
+        for gap in range(1, reach + 1):
+            fade = np.exp(scale[u - gap] - scale[u - 1])
+            for j in range(most):
+                faded[gap - 1, j] = fade * ahead[u - gap, j]
         total = 0.0
         for k in range(counts[u]):
             if evidence[u, k] == 0.0:
                 continue
-            reached = first
-            for gap in range(1, min(_GAP, u) + 1):
-                faded = np.exp(scale[u - gap] - scale[u - 1])
-                for j in range(counts[u - gap]):
-                    reached += faded * ahead[u - gap, j] * links[u, gap - 1, k, j]
-            ahead[u, k] = reached * evidence[u, k]
+            reached = 0.0
+            for gap in range(reach):
+                for j in range(most):
+                    reached += faded[gap, j] * links[u, gap, k, j]
+            ahead[u, k] = (first + reached) * evidence[u, k]
             total += ahead[u, k]
         if u:
             for j in range(counts[u - 1]):
@@ -58,7 +74,7 @@ def follow_chain(
     return np.minimum(ahead * behind, 1.0)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, fastmath=_FAST, error_model="numpy")
 def _run_back(
     counts: np.ndarray, evidence: np.ndarray, links: np.ndarray, scale: np.ndarray,
     start: float, birth: float, death: float,
@@ -74,59 +90,78 @@ def _run_back(
         for k in range(counts[u + 1]):
             none += start * evidence[u + 1, k] * behind[u + 1, k]
         none *= fade
-        for j in range(counts[u]):
-            reached = death * next_none * fade
-            for gap in range(1, min(_GAP, num_lines - 1 - u) + 1):
-                faded = np.exp(scale[u] - scale[u + gap])
-                for k in range(counts[u + gap]):
-                    onward = evidence[u + gap, k] * behind[u + gap, k]
-                    reached += faded * links[u + gap, gap - 1, k, j] * onward
-            behind[u, j] = reached
+        reached = behind[u]
+        reached[:] = death * next_none * fade
+        for gap in range(1, min(_GAP, num_lines - 1 - u) + 1):
+            faded = np.exp(scale[u] - scale[u + gap])
+            for k in range(counts[u + gap]):
+                onward = faded * evidence[u + gap, k] * behind[u + gap, k]
+                if onward != 0.0:
+                    for j in range(most):
+                        reached[j] += onward * links[u + gap, gap - 1, k, j]
     return behind
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, fastmath=_FAST, error_model="numpy")
 def _weigh_links(
     positions: np.ndarray, heights: np.ndarray, counts: np.ndarray, grains: np.ndarray,
     evidence: np.ndarray, length: int, death: float, miss: float, bends: np.ndarray,
 ) -> np.ndarray:  # fmt: skip
-    """Give how probable each step is to a ridge from one up to three missing lines before."""
+    """Give how probable each step is to a ridge from one up to three missing lines before.
+
+    Of a ridge that may not be taken, steps to it have no meaning.
+    """
     num_lines, most = positions.shape
-    links = np.zeros((num_lines, _GAP, most, most))
+    links = np.empty((num_lines, _GAP, most, most), np.float32)
     logs = np.log(np.maximum(heights, 1e-9))
+    like = np.empty(most)
     for u in range(1, num_lines):
         for gap in range(1, min(_GAP, u) + 1):
             kept = (1.0 - death) * miss ** (gap - 1)
+            jump = (1.0 - bends[2] - bends[3]) / length
             for k in range(counts[u]):
                 if evidence[u, k] == 0.0:
                     continue
+                _weigh_changes(logs[u, k], logs[u - gap], bends[4] * np.sqrt(gap), like)
+                link = links[u, gap - 1, k]
+                for j in range(most):
+                    link[j] = kept * jump * like[j]
                 for j in range(counts[u - gap]):
-                    if evidence[u - gap, j] == 0.0:
-                        continue
                     step = abs(positions[u, k] - positions[u - gap, j])
-                    change = logs[u, k] - logs[u - gap, j]
-                    grain = max(grains[u, k], grains[u - gap, j])
-                    like = _weigh_step(step, change, gap, length, grain, bends)
-                    links[u, gap - 1, k, j] = kept * like
+                    if step < _FAR * gap:
+                        grain = max(grains[u, k], grains[u - gap, j])
+                        link[j] = kept * (jump + _weigh_step(step, gap, grain, bends)) * like[j]
     return links
 
 
 @njit(cache=True, nogil=True)
-def _weigh_step(
-    step: float, change: float, gap: int, length: int, grain: float, bends: np.ndarray
-) -> float:
-    """Give the density of a step in position and in the logarithm of height.
+def _weigh_step(step: float, gap: int, grain: float, bends: np.ndarray) -> float:
+    """Give the density of a step in position that is no jump to anywhere: two Laplace laws."""
+    narrow, broad = bends[0] * gap + 0.1 * grain, bends[1] * gap
+    density = bends[2] * np.exp(-step / narrow) / (2.0 * narrow)
+    return density + bends[3] * np.exp(-step / broad) / (2.0 * broad)
 
-    Steps in position are two Laplace laws and a jump to anywhere; those in height a Gaussian with
-    exponential tails, whose norm is 2.66, and for 15 of 100 anything over four e-folds.
+
+@njit(cache=True, nogil=True, fastmath=_FAST, error_model="numpy")
+def _weigh_changes(log: float, others: np.ndarray, spread: float, like: np.ndarray) -> None:
+    """Compute the densities of steps in the logarithm of height from others to one.
+
+    A Gaussian with exponential tails, whose norm is 2.66, and for 15 of 100 anything over four
+    e-folds.
     """
-    near, wide, near_share, wide_share, scale = bends
-    density = (1.0 - near_share - wide_share) / length
-    if step < _FAR * gap:
-        narrow, broad = near * gap + 0.1 * grain, wide * gap
-        density += near_share * np.exp(-step / narrow) / (2.0 * narrow)
-        density += wide_share * np.exp(-step / broad) / (2.0 * broad)
-    spread = scale * np.sqrt(gap)
-    off = abs(change) / spread
-    like = 0.85 * np.exp(-min(off, 0.5 * off * off)) / (2.6 * spread)
-    return density * (like + 0.0375)
+    share, norm = 1.0 / spread, 0.85 / (2.6 * spread)
+    for j in range(len(others)):
+        off = (log - others[j]) * share
+        tail = off if off > 0.0 else -off
+        bell = 0.5 * off * off
+        x = bell if bell < tail else tail
+        x = (x if x < _LEAST else _LEAST) * (-1.0 / _DECAY)
+        rest = 1 / 24 + x * (1 / 120 + x * (1 / 720 + x * (1 / 5040)))
+        power = 1.0 + x * (1.0 + x * (1 / 2 + x * (1 / 6 + x * rest)))
+        power *= power
+        power *= power
+        power *= power
+        power *= power
+        power *= power
+        power *= power
+        like[j] = norm * power + _ANYTHING

@@ -8,8 +8,10 @@ from .cholesky import first_variance, solve, substitute
 _SIZE = 5
 """Parameters: centre, its slope over lines, its speed over frames, its curvature over both."""
 _TURNS = 3
-_MOST = 512
-"""Neighbours of a centre that are looked at."""
+_MOST, _COLUMNS = 512, 7
+"""Neighbours of a centre that are looked at, and what is known of each."""
+_FAST = {"reassoc", "contract", "nsz"}
+"""What compilers may do to sums: none of them is infinite."""
 
 
 @njit(cache=True, nogil=True)
@@ -29,87 +31,109 @@ def join_centres(
     are `rough` [px], and with the misfit of all beyond their noise.
     """
     joined = np.empty((last - first, 2))
-    near = np.empty((_MOST, 7))
+    noise = sigma**2 + common**2
+    near = np.empty((_COLUMNS, _MOST))
     for i in range(first, last):
-        joined[i - first] = _join_one(
-            i, lines, times, centres, sigma, common, length[i], starts, reach, rough[i], near
-        )
+        count = _gather(i, lines, times, centres, noise, common, starts, reach, rough[i], near)
+        off, joined[i - first, 1] = _join_one(near, count, sigma[i] ** 2, noise[i], length[i])
+        joined[i - first, 0] = centres[i] + off
     return joined
 
 
 @njit(cache=True, nogil=True)
 def _join_one(
-    i: int, lines: np.ndarray, times: np.ndarray, centres: np.ndarray, sigma: np.ndarray,
-    common: np.ndarray, length: float, starts: np.ndarray, reach: float, rough: float,
-    near: np.ndarray,
-) -> tuple[float, float]:  # fmt: skip
-    count = _gather(i, lines, times, centres, sigma, common, starts, reach, rough, near)
+    near: np.ndarray, count: int, own: float, variance: float, length: float
+) -> tuple[float, float]:
+    """Put a bent surface through one centre's neighbours; give by how much it is off, and 1σ.
+
+    `own` is the variance that the centre has by itself, `variance` with what all err by together.
+    """
     p = np.zeros(_SIZE)
-    matrix, right, slopes = np.empty((_SIZE, _SIZE)), np.empty(_SIZE), np.empty(_SIZE)
-    slopes[0] = 1.0
-    variance, excess = sigma[i] ** 2 + common[i] ** 2, 0.0
+    matrix, right = np.empty((_SIZE, _SIZE)), np.empty(_SIZE)
+    excess = 0.0
     for turn in range(_TURNS):
-        matrix[:] = 0.0
-        right[:] = 0.0
-        matrix[1, 1] = matrix[2, 2] = 1.0 / 0.3**2
-        matrix[3, 3] = 1.0 / 0.02**2
-        matrix[4, 4] = 1.0 / 0.03**2
-        weights, misfits = 0.0, 0.0
-        for k in range(count):
-            along, later, off, noise, far, own, _ = near[k]
-            spread = noise + own + excess * far
-            slopes[1], slopes[2] = along, later
-            slopes[3], slopes[4] = along * along, later * later
-            bent = p[3] * slopes[3] + p[4] * slopes[4]
-            miss = off - (p[0] + p[1] * along + p[2] * later + bent)
-            robust = 1.0 + miss * miss / (4.0 * spread) if turn else 1.0
-            weight = 1.0 / (spread * robust)
-            for a in range(_SIZE):
-                right[a] += weight * off * slopes[a]
-                for b in range(a + 1):
-                    matrix[a, b] += weight * slopes[a] * slopes[b]
-            weights += 1.0 / robust
-            misfits += min(miss * miss - noise, 9.0 * noise + 1.0) / robust
+        mean = _normal_equations(near, count, p, excess, 0.25 if turn else 0.0, matrix, right)
         if not solve(matrix, right):
             break
         p[:] = right
         variance = first_variance(matrix)
-        together, alone = _weigh_errors(matrix, near[:count], p, excess)
+        together, alone = _weigh_errors(matrix, near, count, p, excess)
         # What goes on over some lines is noise or the surface, and not both.
-        variance = max(variance, min(length * alone, sigma[i] ** 2)) + together**2
+        variance = max(variance, min(length * alone, own)) + together**2
         if turn == 1:
-            excess = max(misfits / max(weights, 1.0), 0.0)
-    return centres[i] + p[0], np.sqrt(variance)
+            excess = max(mean, 0.0)
+    return p[0], np.sqrt(variance)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, fastmath=_FAST, error_model="numpy")
+def _normal_equations(
+    near: np.ndarray, count: int, p: np.ndarray, excess: float, robust: float,
+    matrix: np.ndarray, right: np.ndarray,
+) -> float:  # fmt: skip
+    """Fill the normal equations of the surface, with the priors; give the mean misfit.
+
+    They are sums of products of distances in lines (a) and frames (t): each is made once, and all
+    at a time. Misfits count with `robust` times their square in the variance.
+    """
+    along, later, off, noise, far, own = near[0], near[1], near[2], near[3], near[4], near[5]
+    n, a1, a2, a3, a4, t1, t2, t3, t4 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    at, aat, att, aatt, y, ay, ty, aay, tty = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    weights, misfits = 0.0, 0.0
+    p0, p1, p2, p3, p4 = p[0], p[1], p[2], p[3], p[4]
+    for k in range(count):
+        a, t = along[k], later[k]
+        aa, tt = a * a, t * t
+        spread = noise[k] + own[k] + excess * far[k]
+        miss = off[k] - (p0 + p1 * a + p2 * t + p3 * aa + p4 * tt)
+        square = miss * miss
+        w = 1.0 / (spread + robust * square)
+        more, most = square - noise[k], 9.0 * noise[k] + 1.0
+        weights += spread * w
+        misfits += (more if more < most else most) * spread * w
+        wa, wt, waa, wtt, wy = w * a, w * t, w * aa, w * tt, w * off[k]
+        n, a1, t1, a2, t2, at = n + w, a1 + wa, t1 + wt, a2 + waa, t2 + wtt, at + wa * t
+        a3, t3, a4, t4 = a3 + waa * a, t3 + wtt * t, a4 + waa * aa, t4 + wtt * tt
+        aat, att, aatt = aat + waa * t, att + wa * tt, aatt + waa * tt
+        y, ay, ty, aay, tty = y + wy, ay + wy * a, ty + wy * t, aay + wy * aa, tty + wy * tt
+    right[0], right[1], right[2], right[3], right[4] = y, ay, ty, aay, tty
+    matrix[0, 0], matrix[1, 0], matrix[1, 1] = n, a1, a2 + 1.0 / 0.3**2
+    matrix[2, 0], matrix[2, 1], matrix[2, 2] = t1, at, t2 + 1.0 / 0.3**2
+    matrix[3, 0], matrix[3, 1], matrix[3, 2], matrix[3, 3] = a2, a3, aat, a4 + 1.0 / 0.02**2
+    matrix[4, 0], matrix[4, 1], matrix[4, 2], matrix[4, 3] = t2, att, t3, aatt
+    matrix[4, 4] = t4 + 1.0 / 0.03**2
+    return misfits / max(weights, 1.0)
+
+
+@njit(cache=True, nogil=True, fastmath=_FAST, error_model="numpy")
 def _weigh_errors(
-    root: np.ndarray, near: np.ndarray, p: np.ndarray, excess: float
+    root: np.ndarray, near: np.ndarray, count: int, p: np.ndarray, excess: float
 ) -> tuple[float, float]:
     """Give by how much the joined centre errs where all neighbours err together by `common`.
 
     And the variance that their noise gives it where each errs by itself.
     """
-    answer, slopes = np.zeros(_SIZE), np.empty(_SIZE)
-    answer[0] = slopes[0] = 1.0
+    answer = np.zeros(_SIZE)
+    answer[0] = 1.0
     substitute(root, answer)
+    along, later, off, noise, far, own = near[0], near[1], near[2], near[3], near[4], near[5]
+    common = near[6]
+    p0, p1, p2, p3, p4 = p[0], p[1], p[2], p[3], p[4]
+    b0, b1, b2, b3, b4 = answer[0], answer[1], answer[2], answer[3], answer[4]
     together, alone = 0.0, 0.0
-    for k in range(len(near)):
-        along, later, off, noise, far, own, common = near[k]
-        slopes[1], slopes[2], slopes[3], slopes[4] = along, later, along * along, later * later
-        miss, share = off, 0.0
-        for a in range(_SIZE):
-            miss -= p[a] * slopes[a]
-            share += answer[a] * slopes[a]
-        share /= noise + own + excess * far + 0.25 * miss * miss
-        together += share * common
-        alone += share * share * noise
+    for k in range(count):
+        a, t = along[k], later[k]
+        aa, tt = a * a, t * t
+        miss = off[k] - (p0 + p1 * a + p2 * t + p3 * aa + p4 * tt)
+        share = b0 + b1 * a + b2 * t + b3 * aa + b4 * tt
+        share /= noise[k] + own[k] + excess * far[k] + 0.25 * miss * miss
+        together += share * common[k]
+        alone += share * share * noise[k]
     return together, alone
 
 
 @njit(cache=True, nogil=True)
 def _gather(
-    i: int, lines: np.ndarray, times: np.ndarray, centres: np.ndarray, sigma: np.ndarray,
+    i: int, lines: np.ndarray, times: np.ndarray, centres: np.ndarray, noise: np.ndarray,
     common: np.ndarray, starts: np.ndarray, reach: float, rough: float, near: np.ndarray,
 ) -> int:  # fmt: skip
     """List what may be the same surface, and give how many there are.
@@ -122,23 +146,18 @@ def _gather(
         low = starts[f] + np.searchsorted(lines[starts[f] : starts[f + 1]], lines[i] - reach)
         for j in range(low, starts[f + 1]):
             along = lines[j] - lines[i]
-            if along > reach or count == len(near):
+            if along > reach or count == near.shape[1]:
                 break
             later = times[j] - times[i]
             off = centres[j] - centres[i]
-            noise = sigma[j] ** 2 + common[j] ** 2
-            bound = (
-                3.0 * np.sqrt(noise + sigma[i] ** 2 + common[i] ** 2)
-                + 0.3 * abs(along)
-                + 0.4 * abs(later)
-            )
+            bound = 3.0 * np.sqrt(noise[j] + noise[i]) + 0.3 * abs(along) + 0.4 * abs(later)
             if abs(off) >= bound:
                 continue
             far = 1.0 + (along * along + 4.0 * later * later) / 9.0
-            near[count, 0], near[count, 1], near[count, 2] = along, later, off
-            near[count, 3] = noise
-            near[count, 4] = far if j != i else 0.0
-            near[count, 5] = (rough * far) ** 2 if j != i else 0.0
-            near[count, 6] = common[j]
+            near[0, count], near[1, count], near[2, count] = along, later, off
+            near[3, count] = noise[j]
+            near[4, count] = far if j != i else 0.0
+            near[5, count] = (rough * far) ** 2 if j != i else 0.0
+            near[6, count] = common[j]
             count += 1
     return count

@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
 def score_pixels(
     signal: np.ndarray, levels: np.ndarray, template: np.ndarray, law: np.ndarray
 ) -> np.ndarray:
@@ -41,7 +41,7 @@ def score_pixels(
     return scores
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
 def add_neighbour(
     scores: np.ndarray, other: np.ndarray, down: int, across: int, bound: float, correlation: float,
     total: np.ndarray,

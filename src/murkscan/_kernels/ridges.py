@@ -153,17 +153,34 @@ def compare_ridges(
 ) -> np.ndarray:  # fmt: skip
     """Tell which ridges another frame has, too, with the other's positions shifted (lines, most).
 
-    It has one that lies within `near` grains and is at least `share` as high.
+    It has one that lies within `near` grains and is at least `share` as high. Ridges come the
+    highest first.
     """
     is_there = np.zeros(positions.shape, np.bool_)
     for u in range(min(len(counts), len(other_counts))):
         for k in range(counts[u]):
+            least = share * heights[u, k]
             for j in range(other_counts[u]):
+                if not other_heights[u, j] > least:
+                    break
                 off = abs(other_positions[u, j] + shift - positions[u, k])
-                is_there[u, k] |= (
-                    off < near * grains[u, k] and other_heights[u, j] > share * heights[u, k]
-                )
+                if off < near * grains[u, k]:
+                    is_there[u, k] = True
+                    break
     return is_there
+
+
+@njit(cache=True, nogil=True)
+def are_near(positions: np.ndarray, which: np.ndarray, distance: float) -> np.ndarray:
+    """Tell which entries lie within a distance of one of some in their line (lines, most)."""
+    near = np.zeros(positions.shape, np.bool_)
+    num_lines, most = positions.shape
+    for u in range(num_lines):
+        for j in range(most):
+            if which[u, j]:
+                for k in range(most):
+                    near[u, k] |= abs(positions[u, k] - positions[u, j]) < distance
+    return near
 
 
 @njit(cache=True, nogil=True)

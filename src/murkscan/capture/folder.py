@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -112,13 +113,16 @@ class ImageFolder(AbstractRecording):
     def sample(self, count: int) -> list[Frame]:
         """Read about `count` frames spread evenly over the recording; see the base."""
         frames: list[Frame] = []
-        for picture in spread_evenly(len(self.files), count):
-            try:
-                image = self._read(picture)
-            except FormatError:
-                continue
-            fields = self._split(image, picture)
-            frames.append(fields[len(frames) % len(fields)])
+        wanted = spread_evenly(len(self.files), count)
+        with ThreadPoolExecutor() as pool:
+            reads = [pool.submit(self._read, picture) for picture in wanted]
+            for picture, read in zip(wanted, reads, strict=True):
+                try:
+                    image = read.result()
+                except FormatError:
+                    continue
+                fields = self._split(image, picture)
+                frames.append(fields[len(frames) % len(fields)])
         frames = frames or list(islice(self.frames(), count))
         if not frames:
             raise FormatError(f"None of the {len(self.files)} pictures in {self.path} can be read.")

@@ -1,5 +1,6 @@
 """What a recording shows beside its stripe: how strongly filters answer it, and how often."""
 
+import math
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -8,6 +9,7 @@ from jaxtyping import Float
 from .._kernels.matched_filter import score_pixels
 from ..types.arrays import Indices, Scalars
 from ..types.background import Noise
+from .at_once import map_at_once
 from .matched_filter import MatchedFilter
 from .noise import fit_law
 from .ridges import Marks, Ridges
@@ -20,8 +22,10 @@ Stays = Float[np.ndarray, "..."]
 
 _GAUSSIAN = 1.4826
 """Standard deviation of Gaussian noise as a multiple of its median absolute value."""
-_EVERY = 3
-"""Scan lines from one to the next that are looked at: neighbours are alike."""
+_EVERY, _MOST_ANSWERS = 3, 4_000_000
+"""Scan lines from one to the next that are looked at, since neighbours are alike; and answers that
+tell as well as more would: more than all of as many PAL fields. Of large pictures more lines are
+passed over."""
 _BINS, _FEWEST = 24, 400
 """Bins of the level around, and answers that each has at least."""
 
@@ -64,7 +68,10 @@ def learn_response_law(frames: Sequence[ScanLines], matched: MatchedFilter) -> N
         frames: Frames spread over the recording.
         matched: The filter, with the noise that pixels alone have: answers are no weaker.
     """
-    parts = [_answers(lines.binned(matched.binning), matched) for lines in frames]
+    every = max(_EVERY, math.ceil(sum(one.levels.size for one in frames) / _MOST_ANSWERS))
+    parts = map_at_once(
+        lambda lines: _answers(lines.binned(matched.binning), matched, every), frames
+    )
     level, answer = (np.concatenate(column) for column in zip(*parts, strict=True))
     if len(level) < _FEWEST:
         return matched.noise
@@ -80,11 +87,9 @@ def learn_response_law(frames: Sequence[ScanLines], matched: MatchedFilter) -> N
     return fit_law(table, matched.noise)
 
 
-def _answers(lines: ScanLines, matched: MatchedFilter) -> tuple[Scalars, Scalars]:
+def _answers(lines: ScanLines, matched: MatchedFilter, every: int) -> tuple[Scalars, Scalars]:
     """List the level around, and the answer, of some pixels that are not saturated."""
-    signal, levels = (
-        np.ascontiguousarray(one[:, ::_EVERY]) for one in (lines.signal, lines.levels)
-    )
+    signal, levels = (np.ascontiguousarray(one[:, ::every]) for one in (lines.signal, lines.levels))
     answers = score_pixels(signal, levels, matched.template, np.array([1.0, 0, 0, 1, 0]))
     half = len(matched.template) // 2
     inside = answers[half:-half]

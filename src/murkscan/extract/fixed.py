@@ -1,17 +1,20 @@
 """What is fixed to the picture and not to the scene: rim, dirt, scratches, ghosts, text."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import cv2
 import numpy as np
 from jaxtyping import Bool, Float32, Shaped
 
+from .._kernels.smallest import find_smallest, sum_smallest
 from ..types.background import FixedPattern, Noise
+from ..types.frame import Frame
+from .at_once import map_at_once
 from .markov import Markov
 from .matched_filter import FilterBank
-from .ridges import find_frame_ridges
+from .ridges import Ridges, find_frame_ridges
 from .scan_lines import ScanLines
 from .standing import LEAST, Standing
 
@@ -43,7 +46,12 @@ Levels = Float32[np.ndarray, "length lines"]
 
 
 def learn_fixed_patterns(
-    look: Sequence[ScanLines], bank: FilterBank, markov: Markov, *, lasers: int = 1
+    frames: Sequence[Frame],
+    see: Callable[[Frame], ScanLines],
+    bank: FilterBank,
+    markov: Markov,
+    *,
+    lasers: int = 1,
 ) -> tuple[FixedPattern, ...]:
     """Learn what stays in its place whatever the scene does; one pattern for each kind of field.
 
@@ -51,39 +59,53 @@ def learn_fixed_patterns(
     stays and flickers, as paint and speckle do that pass by, is a surface that keeps its distance.
 
     Args:
-        look: Frames spread over the recording, along their scan lines.
+        frames: Frames spread over the recording.
+        see: Looks at one along its scan lines.
         bank: The filters.
         markov: The chain that tells the stripe from the rest.
         lasers: How many stripes the pictures show.
+
+    Returns:
+        The patterns; none for a kind of field in which nothing stays.
     """
     patterns = []
-    for row in sorted({lines.frame.first_row for lines in look}):
-        group = [lines for lines in look if lines.frame.first_row == row]
-        group = [lines for lines in group if lines.levels.shape == group[0].levels.shape]
+    for row in sorted({frame.first_row for frame in frames}):
+        group = [frame for frame in frames if frame.first_row == row]
+        group = [frame for frame in group if frame.image.shape == group[0].image.shape]
         if len(group) >= _FEWEST:
-            levels = _learn_levels(group, bank, markov, lasers)
-            if group[0].axis == "x":
-                levels = np.ascontiguousarray(levels.T)
-            patterns.append(FixedPattern(row, levels, _find_overlay(levels, bank.noise.white)))
+            levels = _learn_levels(group, see, bank, markov, lasers)
+            if levels.any():
+                patterns.append(FixedPattern(row, levels, _find_overlay(levels, bank.noise.white)))
     return tuple(patterns)
 
 
 def _learn_levels(
-    group: Sequence[ScanLines], bank: FilterBank, markov: Markov, lasers: int
-) -> Levels:
-    low, lasting = _low_levels([lines.levels for lines in group], bank.noise)
-    base = replace(group[0], levels=low, signal=low)
+    group: Sequence[Frame],
+    see: Callable[[Frame], ScanLines],
+    bank: FilterBank,
+    markov: Markov,
+    lasers: int,
+) -> Float32[np.ndarray, "h w"]:
+    first = see(group[0])
+    pictures = [ScanLines.bare(frame, first.axis).levels for frame in group]
+    low, lasting = _low_levels(pictures, bank.noise)
     # Along the picture's edge a filter sees what is fixed sooner than what a stripe may be.
     low_bank = replace(bank, search=replace(bank.search, least=LEAST / 2, rim=_RIM))
-    frames = [find_frame_ridges({0: low_bank.score(each)}, low_bank) for each in (base, *group)]
-    standing = Standing.of(frames[0], frames[1:])
+    ridges = _find_ridges(replace(first, levels=low, signal=low), low_bank)
+    frames = map_at_once(lambda frame: _find_ridges(see(frame), low_bank).bare(), group)
+    standing = Standing.of(ridges, frames)
     is_surface = standing.are_surface(markov, lasers=lasers)
     is_fixed = standing.stand & ~is_surface
     # A stripe that moves by less than its width leaves a line as well, which stands nowhere.
-    lingers = frames[0].are_in_lines(frames[0].exist & (frames[0].heights > LEAST) & ~is_fixed)
+    lingers = ridges.are_in_lines(ridges.exist & (ridges.heights > LEAST) & ~is_fixed)
     covered = standing.cover(is_surface | lingers, low.shape)
     judged = standing.cover(is_fixed, low.shape)
-    return _stand_out(low, covered, judged, lasting, bank.noise, len(group))
+    levels = _stand_out(low, covered, judged, lasting, bank.noise, len(group))
+    return np.ascontiguousarray(levels.T) if first.axis == "x" else levels
+
+
+def _find_ridges(lines: ScanLines, bank: FilterBank) -> Ridges:
+    return find_frame_ridges({0: bank.score(lines)}, bank)
 
 
 def _low_levels(
@@ -99,14 +121,18 @@ def _low_levels(
     low = np.empty(levels[0].shape, np.float32)
     lasting = np.empty(levels[0].shape, bool)
     half, few = (len(levels) + 1) // 2, len(levels) // _FEW_DARK
-    for first in range(0, len(low), _BLOCK):
+
+    def average(first: int) -> None:
         rows = slice(first, first + _BLOCK)
-        stack = np.partition(np.stack([one[rows] for one in levels]), (few, half - 1), axis=0)
-        mean = stack[:half].mean(axis=0, dtype=np.float32)
+        stack = np.stack([one[rows] for one in levels]).reshape(len(levels), -1)
+        middle, shape = find_smallest(stack, half - 1), low[rows].shape
+        mean = (sum_smallest(stack, half, middle) / half).astype(np.float32).reshape(shape)
         scatter = np.sqrt(noise.variance(mean)).astype(np.float32)
         low[rows] = mean + np.float32(_HALF_MEAN) * scatter
-        missed = low[rows] - stack[few]
+        missed = low[rows] - find_smallest(stack, few).reshape(shape)
         lasting[rows] = missed < _LASTING[0] * scatter + _LASTING[1] * low[rows]
+
+    map_at_once(average, range(0, len(low), _BLOCK))
     return low, lasting
 
 

@@ -1,17 +1,19 @@
 """The sheet's own glow, learnt where frames show it with the surface beyond."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Shaped
 
+from .._kernels.alike import average_alike
 from ..types.arrays import Indices, Mask, Pixels, Scalars
 from ..types.background import Noise, StripeShape
 from ..types.frame import Frame
 from ..types.laser import Axis
 from ..types.stripe import Stripe
-from .quantiles import quantiles
+from .at_once import map_at_once
 from .scan_lines import ScanLines
 
 _BLOCK = 8
@@ -22,6 +24,10 @@ _CLEAR = 24.0, 10.0
 """Full-frame pixels, and widths of the stripe, that it must be away with its skirt."""
 _FEWEST = 4
 """Frames that must show a place."""
+_MOST = 10_000
+"""Places that tell of the water as well as more would: more than all of a PAL field."""
+_WITHIN = 3.0, 1.5
+"""Standard deviations of the noise, and grey levels, up to which levels are alike."""
 
 Levels = Float[np.ndarray, "length blocks"]
 
@@ -49,7 +55,7 @@ class Glow:
         return Glow(*(column[which] for column in columns))
 
 
-def learn_glow(
+def look_at_glow(
     frames: Sequence[Frame],
     stripes: Sequence[Stripe],
     axis: Axis,
@@ -57,10 +63,8 @@ def learn_glow(
     *,
     near: int,
     clear: float,
-) -> Glow:
-    """Average what lies before the surface over frames.
-
-    The glow is fixed to the rig: a pixel has the same in every frame whose surface lies beyond.
+) -> list[Levels]:
+    """Average in each frame what lies before the surface; NaN elsewhere.
 
     Args:
         frames: Frames of a recording.
@@ -70,14 +74,32 @@ def learn_glow(
         near: -1 or 1, the way along scan lines in which nearer surfaces are seen.
         clear: Distance from the stripe; see `clearance`.
     """
+
+    def look(shown: tuple[Frame, Stripe]) -> Levels:
+        lines = ScanLines.bare(shown[0], axis)
+        levels = _average_blocks(lines, noise)
+        levels[_is_behind(lines, shown[1], near, clear)] = np.nan
+        return levels
+
+    return map_at_once(look, zip(frames, stripes, strict=True))
+
+
+def learn_glow(frames: Sequence[Frame], seen: Sequence[Levels], axis: Axis, noise: Noise) -> Glow:
+    """Average what lies before the surface over frames.
+
+    The glow is fixed to the rig: a pixel has the same in every frame whose surface lies beyond.
+
+    Args:
+        frames: Frames of a recording.
+        seen: What each shows of the glow; see `look_at_glow`.
+        axis: The camera's axis along which the laser sits.
+        noise: Of a pixel.
+    """
     parts = []
     for row in sorted({frame.first_row for frame in frames}):
-        alike = [
-            (ScanLines.of(frame, axis, noise=noise), stripe)
-            for frame, stripe in zip(frames, stripes, strict=True)
-            if frame.first_row == row
-        ]
-        parts.append(_average(alike, noise, near, clear))
+        alike = [number for number, frame in enumerate(frames) if frame.first_row == row]
+        lines = ScanLines.bare(frames[alike[0]], axis)
+        parts.append(_average(np.stack([seen[number] for number in alike]), lines, noise))
     columns = ("pixels", "block", "level", "variance")
     joined = (np.concatenate([getattr(part, name) for part in parts]) for name in columns)
     return Glow(*joined)
@@ -90,15 +112,13 @@ def clearance(shape: StripeShape, frame: Frame) -> float:
 
 
 def _average(
-    alike: Sequence[tuple[ScanLines, Stripe]], noise: Noise, near: int, clear: float
+    seen: Float[np.ndarray, "frames length blocks"], lines: ScanLines, noise: Noise
 ) -> Glow:
-    """Average over frames of the same rows what lies before their surface."""
-    lines = alike[0][0]
-    stack = np.stack([average_blocks(each, noise) for each, _ in alike])
-    behind = np.stack([is_behind(each, stripe, near, clear) for each, stripe in alike])
-    before = np.where(behind, np.nan, stack)
-    place, block = np.nonzero(np.isfinite(before).sum(axis=0) >= _FEWEST)
-    level, number = _mean_within(before[:, place, block], 0, noise)
+    """Average over frames of the same rows."""
+    shown = np.isfinite(seen).sum(axis=0) >= _FEWEST
+    shown[np.arange(len(shown)) % max(math.ceil(shown.sum() / _MOST), 1) > 0] = False
+    place, block = np.nonzero(shown)
+    level, number = _mean_within(seen[:, place, block].T, noise)
     # Twice that of as many pixels: the lens has smeared their noise, or their snow.
     variance = noise.variance(level) * 2.0 / _BLOCK / number
     along = lines.as_full_frame(_EVERY * place.astype(float))
@@ -106,14 +126,14 @@ def _average(
     return Glow(pixels, block, level, variance)
 
 
-def average_blocks(lines: ScanLines, noise: Noise) -> Levels:
+def _average_blocks(lines: ScanLines, noise: Noise) -> Levels:
     """Average each block of scan lines, without particles."""
     count = lines.num_lines // _BLOCK
-    levels = lines.levels[::_EVERY, : count * _BLOCK].astype(float)
-    return _mean_within(levels.reshape(len(levels), count, _BLOCK), 2, noise)[0]
+    levels = np.ascontiguousarray(lines.levels[::_EVERY, : count * _BLOCK])
+    return _mean_within(levels.reshape(-1, _BLOCK), noise)[0].reshape(len(levels), count)
 
 
-def is_behind(
+def _is_behind(
     lines: ScanLines, stripe: Stripe, near: int, clear: float
 ) -> Bool[np.ndarray, "length blocks"]:
     """Tell which samples are at the stripe or behind it, or have none in their block."""
@@ -128,15 +148,6 @@ def is_behind(
     return ~(near * (place - ends) > clear) | ~np.isfinite(ends)
 
 
-def _mean_within(
-    values: Float[np.ndarray, "..."], axis: int, noise: Noise
-) -> tuple[Float[np.ndarray, "..."], Float[np.ndarray, "..."]]:
+def _mean_within(values: Shaped[np.ndarray, "n each"], noise: Noise) -> tuple[Scalars, Scalars]:
     """Give the mean, and the number, of what lies within the noise of the median: no particles."""
-    if values.size == 0:
-        empty = np.zeros(np.delete(values.shape, axis))
-        return empty, empty
-    (middle,) = quantiles(values, (0.5,), axis=axis)
-    variance = noise.variance(middle)
-    keep = np.abs(values - middle) < np.maximum(3.0 * np.sqrt(variance), 1.5)
-    number = np.maximum(keep.sum(axis=axis), 1)
-    return np.where(keep, values, 0.0).sum(axis=axis) / number, number.astype(float)
+    return average_alike(values, noise.as_law(), *_WITHIN)

@@ -19,18 +19,19 @@ from ..types.frame import Frame
 from ..types.rig import Rig
 from ..types.stripe import Stripe
 from .assemble import assemble_stripe
+from .at_once import map_at_once
 from .attenuation import estimate_attenuation, nearer_side
 from .base import AbstractExtractor
 from .centres import Centres, doubt_wide, find_centres, join_frames
 from .clutter import Rates, Stays, learn_rates, learn_stays, usual_rates, usual_stays
 from .fixed import learn_fixed_patterns
-from .glow import clearance, learn_glow
-from .markov import Markov, ask_frames
+from .glow import clearance, learn_glow, look_at_glow
+from .markov import Markov, Posterior, ask_frames
 from .matched_filter import FilterBank
 from .neighbours import with_neighbours
 from .noise import learn_levels, learn_noise
 from .remarks import find_remarks
-from .ridges import find_frame_ridges
+from .ridges import Ridges, find_frame_ridges
 from .rim import add_rim
 from .row_noise import learn_row_noise
 from .scan_lines import ScanLines
@@ -124,14 +125,19 @@ class Murk(AbstractExtractor):
             search=learnt.bank.search,
             fixed=fixed,
         )
-        others, seen = OtherLasers.of(rig, laser), (see(frame, fixed=fixed) for frame in frames)
-        stripes = [next(self._find([lines], background, others, laser)) for lines in seen]
+        others = OtherLasers.of(rig, laser)
+
+        def find(frame: Frame) -> Stripe:
+            return next(self._find([see(frame, fixed=fixed)], background, others, laser))
+
+        stripes = map_at_once(find, frames)
         near, clear = nearer_side(rig, laser=laser), clearance(background.shapes[0], frames[0])
-        remarks = find_remarks(frames, stripes, axis, levels, near=near, clear=clear)
+        seen_glow = look_at_glow(frames, stripes, axis, levels, near=near, clear=clear)
+        remarks = find_remarks(frames, stripes, seen_glow, levels)
         background = replace(background, remarks=remarks)
         if rig.water is None:
             return background
-        glow = learn_glow(frames, stripes, axis, levels, near=near, clear=clear)
+        glow = learn_glow(frames, seen_glow, axis, levels)
         return replace(background, attenuation=estimate_attenuation(glow, rig, laser=laser))
 
     def extract(
@@ -185,14 +191,13 @@ class Murk(AbstractExtractor):
         self, frames: Sequence[Frame], see: Callable[..., ScanLines], noise: Noise, *, lasers: int
     ) -> tuple[tuple[FixedPattern, ...], tuple[StripeShape, ...]]:
         """Learn what is fixed to the picture, and the stripe's looks before it is taken away."""
-        rim = add_rim(frames, noise, ())
-        look = [see(frame, fixed=rim) for frame in frames]
-        shapes = self._learn_shapes(_thin(look), noise, self._plain)
+        see = partial(see, fixed=add_rim(frames, noise, ()))
+        shapes = self._learn_shapes([see(frame) for frame in _thin(frames)], noise, self._plain)
         bank, markov = (
             FilterBank.of(shapes, noise, self._plain),
             self._markov(usual_rates(), usual_stays()),
         )
-        stays = learn_fixed_patterns(look, bank, markov, lasers=lasers)
+        stays = learn_fixed_patterns(frames, see, bank, markov, lasers=lasers)
         return add_rim(frames, noise, stays), shapes
 
     def _learn_depth(self, look: Sequence[ScanLines], bank: FilterBank, rig: Rig) -> "_Learnt":
@@ -214,14 +219,13 @@ class Murk(AbstractExtractor):
 
     def _learn_rates(self, look: Sequence[ScanLines], bank: FilterBank, rig: Rig) -> "_Learnt":
         """Count the clutter of each height, twice: what is a stripe, of any laser, hangs on it."""
-        ridges = [find_frame_ridges({0: bank.score(lines)}, bank) for lines in look]
+        ridges = map_at_once(lambda lines: find_frame_ridges({0: bank.score(lines)}, bank), look)
         lasers = [OtherLasers.of(rig, number) for number in range(len(rig.lasers))]
         rates = usual_rates()
         for _ in range(2):
             markov = self._markov(rates, usual_stays())
-            stripes = [
-                [markov.follow(one, np.log(laser.tell(one))) for laser in lasers] for one in ridges
-            ]
+            follow = partial(_follow_each, markov=markov, lasers=lasers)
+            stripes = map_at_once(follow, ridges)
             rates = learn_rates(ridges, stripes)
         heights = [
             one.heights[posterior > 0.5]
@@ -261,6 +265,11 @@ class _Learnt:
     def height(self) -> float:
         """Give the stripe's median score; NaN where there is none."""
         return float(np.median(self.heights)) if len(self.heights) else math.nan
+
+
+def _follow_each(ridges: Ridges, markov: Markov, lasers: Sequence[OtherLasers]) -> list[Posterior]:
+    """Give the posterior of each ridge being the stripe of each laser."""
+    return [markov.follow(ridges, np.log(laser.tell(ridges))) for laser in lasers]
 
 
 def _deepen(search: Search) -> Search:

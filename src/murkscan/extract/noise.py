@@ -6,12 +6,21 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from jaxtyping import Float, Shaped
+from jaxtyping import Float, Int32, Shaped
 from scipy.optimize import nnls
 
+from .._kernels.counts import (
+    count_bends,
+    count_changes,
+    list_fourth_differences,
+    sort_by,
+    winsorise,
+)
 from ..types.arrays import Image, Scalars
 from ..types.background import Background, Noise
 from ..types.frame import Frame
+from .at_once import map_at_once
+from .quantiles import Counts, count_levels_of, quantile_of_counts
 
 _QUANTISATION = 1 / math.sqrt(12)
 """Standard deviation of rounding [grey levels]: no recording has less noise."""
@@ -36,16 +45,17 @@ def learn_noise(frames: Sequence[Frame]) -> Background:
         Immerkær, Fast noise variance estimation, CVIU 64(2), 1996, for noise from second
         differences.
     """
-    within = np.median([_noise_within(frame.image) for frame in frames])
+    within = np.median(map_at_once(lambda frame: _noise_within(frame.image), frames))
     # Fields come with odd and even rows in turn: only those of the same rows can be compared.
     alike = [[f for f in frames if f.first_row == row] for row in {f.first_row for f in frames}]
     pairs = [
-        _noise_between(first.image, second.image)
+        (first.image, second.image)
         for same in alike
         for first, second in pairwise(same)
         if first.image.shape == second.image.shape
     ]
-    noise = min(within, np.median(pairs)) if pairs else within
+    between = map_at_once(lambda pair: _noise_between(*pair), pairs)
+    noise = min(within, np.median(between)) if between else within
     return Background(noise=max(float(noise), _QUANTISATION), scale=_find_scale(frames))
 
 
@@ -56,36 +66,39 @@ def _find_scale(frames: Sequence[Frame]) -> float:
 
 
 def _noise_within(image: Image) -> float:
-    levels = image.astype(np.int32)
     # Neighbours share noise where a colour mosaic or an encoder has smoothed them: look further.
-    left, middle, right = (
-        levels[:, : -2 * _APART],
-        levels[:, _APART:-_APART],
-        levels[:, 2 * _APART :],
-    )
-    bend = left - 2 * middle + right
-    return _spread(bend) / math.sqrt(6)
+    counts = np.zeros(4 * np.iinfo(image.dtype).max + 1, int)
+    count_bends(image, _APART, counts)
+    return _spread(counts) / math.sqrt(6)
 
 
 def _noise_between(first: Image, second: Image) -> float:
-    return _spread(second.astype(np.int32) - first) / math.sqrt(2)
+    counts = np.zeros(np.iinfo(first.dtype).max + 1, int)
+    count_changes(first, second, counts)
+    return _spread(counts) / math.sqrt(2)
 
 
-def _spread(values: np.ndarray) -> float:
-    """Robust standard deviation of whole numbers around 0, not itself bound to whole numbers."""
-    if values.size == 0:
+def _spread(counts: Counts) -> float:
+    """Robust standard deviation of whole numbers around 0, not itself bound to whole numbers.
+
+    Args:
+        counts: How often each size is met.
+    """
+    total = int(counts.sum())
+    if total == 0:
         return 0.0
-    size = np.abs(values)
-    middle = float(np.quantile(size, 0.5, method="lower"))
+    middle = int(np.searchsorted(np.cumsum(counts), (total - 1) // 2, side="right"))
     # Among equal whole numbers the median is the share of smaller ones that says where it lies.
-    below, at = np.mean(size < middle), np.mean(size == middle)
+    below, at = counts[:middle].sum() / total, counts[middle] / total
     return _GAUSSIAN * max(middle - 0.5 + float((0.5 - below) / at), 0.0)
 
 
-_KERNEL = np.array([1, -4, 6, -4, 1])
-"""Fourth differences: blind to all that a cubic follows."""
-_CLOSE = 2.5
-"""Standard deviations beyond which a difference counts as one of these."""
+_REACH, _SQUARES = 5, 70.0
+"""Pixels of a fourth difference, which is blind to all that a cubic follows, and the sum of the
+squares of their weights 1, -4, 6, -4, 1."""
+_CLOSE, _LEFT, _TURNS = 2.5, 0.9776, 12
+"""Standard deviations beyond which a difference counts as one of these, what is left of a
+Gaussian's variance by that, and how often that is done."""
 _BIN = (3.0, 0.2)
 """Least width of a bin of levels [grey levels], and as a share of the level. Rounding would bias
 narrower ones."""
@@ -94,8 +107,8 @@ _FEW = 500
 
 _ENOUGH = 10_000_000
 """Pixels that tell the law as well as more would: those of 48 PAL fields."""
-_LEVELS = 1 << 16
-"""Grey levels of the deepest picture."""
+_DARKER = 0.85
+"""Share of white below which pixels tell."""
 _LAGS = (1, 8)
 """Distances of the pixels whose differences are taken: neighbours, and those of other blocks."""
 _SMOOTHED = 2.0
@@ -106,6 +119,7 @@ _STEP = 1.0
 
 Pictures = Sequence[Shaped[np.ndarray, "_ _"]]
 """Pictures that may differ in size, as the fields of an odd number of rows do."""
+Sums = Int32[np.ndarray, " n"]
 Bins = Float[np.ndarray, "bins 3"]
 """Mean level, variance of a pixel, number of differences."""
 
@@ -121,22 +135,23 @@ def learn_levels(images: Pictures) -> Noise:
         fitting for single-image raw-data, IEEE TIP 17(10), 2008, for the law; the differences and
         the one-sided fit are ours.
     """
-    white = _learn_white(images)
+    counts = map_at_once(count_levels_of, images)
+    white = _learn_white(np.sum(counts, axis=0))
     every = math.ceil(sum(image.size for image in images) / _ENOUGH)
-    images = [image[::every] for image in images]
-    level = float(np.median([np.median(image) for image in images]))
-    near, far = (_learn_law(images, white, lag) for lag in _LAGS)
+    level = float(np.median([quantile_of_counts(own, 0.5) for own in counts]))
+    near, far = (_learn_law(images, white, lag, every) for lag in _LAGS)
     seen, beyond = (law.fixed + law.gain * level for law in (near, far))
     is_smoothed = seen < _QUANTISATION**2 and beyond > _SMOOTHED * seen
     return replace(far, least=_STEP) if is_smoothed else near
 
 
-def _learn_law(images: Pictures, white: float, lag: int) -> Noise:
-    """Estimate the noise from pixels that are `lag` apart."""
-    bends = (_bends(image, lag) for image in images)
-    level, bend = (np.concatenate(parts) for parts in zip(*bends, strict=True))
-    keep = level < 0.85 * white
-    bins = _bin_bends(level[keep], bend[keep])
+def _learn_law(images: Pictures, white: float, lag: int, every: int) -> Noise:
+    """Estimate the noise from pixels that are `lag` apart, of every so many rows."""
+    listed = map_at_once(lambda image: list_fourth_differences(image, lag, every), images)
+    levels, bends = (np.concatenate(parts) for parts in zip(*listed, strict=True))
+    levels, bends = sort_by(levels, bends, int(levels.max(initial=0)))
+    dark = int(np.searchsorted(levels, _DARKER * white * _REACH))
+    bins = _bin_bends(levels[:dark], bends[:dark])
     # Where black cuts the noise off, it seems to grow with the level.
     whole = bins[bins[:, 0] > _CLOSE * np.sqrt(bins[:, 1])]
     if len(whole) == 0:
@@ -145,52 +160,35 @@ def _learn_law(images: Pictures, white: float, lag: int) -> Noise:
     return Noise(fixed, gain, white)
 
 
-def _learn_white(images: Pictures) -> float:
+def _learn_white(counts: Counts) -> float:
     """Give the level that clipped pixels pile up at; the largest that there is where none do."""
-    counts = np.zeros(_LEVELS, int)
-    for image in images:
-        counts += np.bincount(image.ravel(), minlength=_LEVELS)
     top = int(np.flatnonzero(counts)[-1])
     at_top, below = counts[top], counts[max(top - 5, 0) : top].sum() / 5
     # Even pictures, such as a codec's black, pile up as well.
     middle = int(np.searchsorted(np.cumsum(counts), 0.5 * counts.sum()))
     piled = at_top > max(50, 5 * below) and top > 2 * middle + 10
-    return float(top if piled else np.iinfo(images[0].dtype).max)
+    return float(top if piled else len(counts) - 1)
 
 
-def _bends(image: Image, lag: int) -> tuple[Scalars, Scalars]:
-    """Give the mean level and the fourth difference at every second pixel."""
-    reach = lag * (len(_KERNEL) - 1) + 1
-    if image.shape[1] < reach:
-        return np.zeros(0), np.zeros(0)
-    windows = np.lib.stride_tricks.sliding_window_view(image, reach, axis=1)[:, ::2, ::lag]
-    return windows.mean(axis=2).ravel(), (windows @ _KERNEL.astype(np.int32)).ravel().astype(float)
+def _bin_bends(levels: Sums, bends: Sums) -> Bins:
+    """Give mean level, variance of a pixel and number of differences of each full bin.
 
-
-def _bin_bends(level: Scalars, bend: Scalars) -> Bins:
-    """Give mean level, variance of a pixel and number of differences of each full bin."""
-    order = np.argsort(level)
-    level, bend = level[order], bend[order]
+    Args:
+        levels: Sums of the levels of as many pixels as a difference has, in order.
+        bends: The differences.
+    """
     rows: list[tuple[float, float, float]] = []
     first = 0
-    while first < len(level):
-        end = level[first] + max(_BIN[0], _BIN[1] * level[first])
-        last = max(int(np.searchsorted(level, end)), first + _FEW)
-        if last <= len(level):
-            variance = _winsorised(bend[first:last]) / float(np.sum(_KERNEL**2))
-            rows.append((float(level[first:last].mean()), variance, float(last - first)))
+    while first < len(levels):
+        level = levels[first] / _REACH
+        end = level + max(_BIN[0], _BIN[1] * level)
+        last = max(int(np.searchsorted(levels, end * _REACH)), first + _FEW)
+        if last <= len(levels):
+            variance = winsorise(bends[first:last], _CLOSE, _LEFT, _TURNS) / _SQUARES
+            mean = float(levels[first:last].mean()) / _REACH
+            rows.append((mean, variance, float(last - first)))
         first = last
     return np.array(rows, float).reshape(-1, 3)
-
-
-def _winsorised(values: Scalars) -> float:
-    """Give the variance around 0 with far values pulled in; whole numbers do not bias it."""
-    squares = values**2
-    variance = float(np.mean(squares))
-    for _ in range(12):
-        # 0.9776 is what is left of a Gaussian's variance with all beyond 2.5 of it pulled in.
-        variance = float(np.mean(np.minimum(squares, _CLOSE**2 * variance))) / 0.9776
-    return variance
 
 
 def _average(bins: Bins) -> float:

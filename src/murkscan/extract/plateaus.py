@@ -35,10 +35,12 @@ def list_plateaus(lines: ScanLines, noise: Noise) -> tuple[Indices, Float[np.nda
     if lines.has_fixed:
         # What is white by itself, as text is, shows nothing of the scene.
         levels = np.where(lines.signal > 0.5 * white, levels, 0)
-    if not (levels >= white).any():
+    rows = np.flatnonzero(levels.max(axis=1, initial=0) >= white)
+    if len(rows) == 0:
         return np.zeros(0, int), np.zeros((0, 4))
-    runs, counts = find_plateaus(levels, white, _SHORTEST, _LONGEST, _MOST)
+    some = levels[rows[0] : rows[-1] + 1]
+    runs, counts = find_plateaus(some, white, _SHORTEST, _LONGEST, _MOST)
     line, number = np.nonzero(np.arange(_MOST) < counts[:, None])
-    found = measure_at(lines, line, runs[line, number].mean(axis=1), noise)
+    found = measure_at(lines, line, rows[0] + runs[line, number].mean(axis=1), noise)
     whole = np.isfinite(found[:, 0])
     return line[whole], found[whole]

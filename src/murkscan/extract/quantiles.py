@@ -1,7 +1,13 @@
-"""Quantiles of what is known, where some values are not."""
+"""Quantiles of what is known, where some values are not, and of what has been counted."""
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
+
+from .._kernels.counts import count_levels
+from ..types.arrays import Image
+
+Counts = Int[np.ndarray, " values"]
+"""How often each whole number from 0 on is met."""
 
 
 def quantiles(
@@ -24,3 +30,17 @@ def quantiles(
         above = np.take_along_axis(ordered, np.minimum(low + 1, last), axis=axis)
         found.append(below + (place - low) * (above - below))
     return np.stack(found)
+
+
+def count_levels_of(image: Image) -> Counts:
+    """Count how often each grey level that a picture of its depth may have is met."""
+    counts = np.zeros(np.iinfo(image.dtype).max + 1, int)
+    count_levels(image, counts)
+    return counts
+
+
+def quantile_of_counts(counts: Counts, share: float) -> float:
+    """Give a quantile of what has been counted, as `np.quantile` does of the values themselves."""
+    place = share * (int(counts.sum()) - 1)
+    below, above = np.searchsorted(np.cumsum(counts), [np.floor(place), np.ceil(place)], "right")
+    return float(below + (place - np.floor(place)) * (above - below))

@@ -9,16 +9,17 @@ from jaxtyping import Float
 from ..types.arrays import Scalars
 from ..types.background import Noise
 from ..types.frame import Frame
-from ..types.laser import Axis
 from ..types.stripe import Stripe
-from .glow import average_blocks, is_behind
-from .quantiles import quantiles
-from .scan_lines import ScanLines
+from .at_once import map_at_once
+from .glow import Levels
+from .quantiles import count_levels_of, quantile_of_counts, quantiles
 
 _LIT = 0.2
 """Share of white from which the darker half of a picture is lit by something else."""
 _DARK = 3.0
 """Standard deviations of its noise above its median that a black frame's brightest pixels reach."""
+_BRIGHT = 0.9999
+"""Share of a picture's pixels that its brightest exceed."""
 _STEP = 1.3
 """Ratio of the glow's brightness over frames from which the exposure has changed."""
 _MOVED = 0.25
@@ -30,33 +31,27 @@ _MOST = 10_000
 _FEWEST = 200
 """Places that two frames must share to be compared."""
 
-Levels = Float[np.ndarray, "frames places"]
+Places = Float[np.ndarray, "frames places"]
 
 
 def find_remarks(
-    frames: Sequence[Frame],
-    stripes: Sequence[Stripe],
-    axis: Axis,
-    noise: Noise,
-    *,
-    near: int,
-    clear: float,
+    frames: Sequence[Frame], stripes: Sequence[Stripe], seen: Sequence[Levels], noise: Noise
 ) -> tuple[str, ...]:
     """Look for what makes a recording worse than it could be.
 
     Args:
         frames: Frames spread over the recording, in order.
         stripes: What was found in each.
-        axis: The camera's axis along which the laser sits.
+        seen: What each shows of the glow.
         noise: Of a pixel.
-        near: -1 or 1, the way along scan lines in which nearer surfaces are seen.
-        clear: Distance from the stripe at which its skirt is gone [full-frame px].
 
     Returns:
         Sentences that say what was seen and what to do; none for a good recording.
     """
     remarks = [*_about_stripes(frames, stripes), *_about_light(frames, noise)]
-    glow = _gather_glow(frames, stripes, axis, noise, near, clear)
+    glow = _gather_glow(
+        [own for own, frame in zip(seen, frames, strict=True) if _is_like(frame, frames)]
+    )
     if glow.shape[1] >= _FEWEST:
         remarks += _about_glow(glow, [frame.index for frame in frames if _is_like(frame, frames)])
     return tuple(remarks)
@@ -79,8 +74,10 @@ def _about_stripes(frames: Sequence[Frame], stripes: Sequence[Stripe]) -> list[s
 
 def _about_light(frames: Sequence[Frame], noise: Noise) -> list[str]:
     remarks = []
-    middle = np.array([float(np.median(frame.image)) for frame in frames])
-    bright = np.array([float(np.quantile(frame.image, 0.9999)) for frame in frames])
+    counts = map_at_once(lambda frame: count_levels_of(frame.image), frames)
+    middle, bright = (
+        np.array([quantile_of_counts(each, share) for each in counts]) for share in (0.5, _BRIGHT)
+    )
     spread = np.sqrt(noise.variance(middle))
     black = int(np.sum(bright <= middle + _DARK * spread + 2.0))
     if black:
@@ -94,32 +91,18 @@ def _about_light(frames: Sequence[Frame], noise: Noise) -> list[str]:
     return remarks
 
 
-def _gather_glow(
-    frames: Sequence[Frame],
-    stripes: Sequence[Stripe],
-    axis: Axis,
-    noise: Noise,
-    near: int,
-    clear: float,
-) -> Levels:
+def _gather_glow(seen: Sequence[Levels]) -> Places:
     """Give the glow of frames with the same rows, where all show it and it is bright enough."""
-    levels = []
-    for frame, stripe in zip(frames, stripes, strict=True):
-        if _is_like(frame, frames):
-            lines = ScanLines.of(frame, axis, noise=noise)
-            behind = is_behind(lines, stripe, near, clear)
-            levels.append(np.where(behind, np.nan, average_blocks(lines, noise)).ravel())
-    stack = np.stack(levels)
-    shown = np.isfinite(stack).sum(axis=0) >= max(2, len(stack) // 2)
-    stack = stack[:, shown]
-    if stack.size == 0:
-        return stack
-    stack = stack[:, :: math.ceil(stack.shape[1] / _MOST)]
+    stack = np.stack([levels.ravel() for levels in seen])
+    shown = np.flatnonzero(np.isfinite(stack).sum(axis=0) >= max(2, len(stack) // 2))
+    if len(shown) == 0:
+        return stack[:, shown]
+    stack = stack[:, shown[:: math.ceil(len(shown) / _MOST)]]
     stack = stack - np.nanmin(stack)
     return stack[:, _medians(stack) > _SEEN]
 
 
-def _medians(levels: Levels) -> Scalars:
+def _medians(levels: Places) -> Scalars:
     """Give each place's median over the frames that show it."""
     return np.asarray(quantiles(levels, (0.5,))[0, 0])
 
@@ -128,7 +111,7 @@ def _is_like(frame: Frame, frames: Sequence[Frame]) -> bool:
     return frame.first_row == frames[0].first_row and frame.image.shape == frames[0].image.shape
 
 
-def _about_glow(glow: Levels, indices: Sequence[int]) -> list[str]:
+def _about_glow(glow: Places, indices: Sequence[int]) -> list[str]:
     usual = _medians(glow)
     exposure = np.array([_shared_factor(one, usual) for one in glow])
     known = exposure[np.isfinite(exposure)]
@@ -162,7 +145,7 @@ def _shared_factor(levels: Scalars, usual: Scalars) -> float:
     return max(1.0, min(factors)) * min(1.0, max(factors))
 
 
-def _change(pattern: Levels, cut: int) -> float:
+def _change(pattern: Places, cut: int) -> float:
     """Give by how much the usual pattern differs before and after a cut, of three frames each."""
     if not 3 <= cut <= len(pattern) - 3:
         return float("nan")

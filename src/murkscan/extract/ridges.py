@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -11,6 +11,7 @@ from jaxtyping import Bool, Float, Int8
 from .._kernels.blurred_ends import find_blurred_ends
 from .._kernels.matched_filter import add_neighbour
 from .._kernels.ridges import (
+    are_near,
     compare_ridges,
     drop_hidden,
     find_ridges,
@@ -79,6 +80,11 @@ class Ridges:
         """Number of the frame in its recording."""
         return self.lines.index
 
+    def bare(self) -> "Ridges":
+        """Give the same without the pictures that they were found in, but for the frame's own."""
+        lines = self.lines
+        return replace(self, lines=ScanLines.bare(lines.frame, lines.axis, slope=lines.slope))
+
     @property
     def exist(self) -> Marks:
         """Tell which entries are ridges."""
@@ -109,9 +115,7 @@ class Ridges:
 
     def are_within(self, which: Marks, distance: float) -> Marks:
         """Tell which lie within a distance of one of some in their scan line [px of `lines`]."""
-        places = np.where(which, self.positions, np.inf)
-        apart = np.abs(self.positions[:, :, None] - places[:, None, :])
-        return (apart < distance).any(axis=2)
+        return are_near(self.positions, which, distance)
 
     def are_long(self, which: Marks) -> Marks:
         """Tell which of some are the highest of their line and go on over many lines."""
@@ -255,7 +259,7 @@ def _find_one_width(
             down, across = _half_rows(own.lines, other.lines, matched.binning)
             add_neighbour(scores, other.scores[number], down, across, _BOUND, _HALF_ROW, total)
         total *= np.float32(1 / math.sqrt(len(near)))
-        scores = np.maximum(total, scores)
+        scores = np.maximum(total, scores, out=total)
     least, most = bank.search.least, bank.search.most
     margin = min(bank.search.rim * matched.width, (len(scores) - 3) / 2)
     positions, heights, counts = find_ridges(scores, least, most, matched.reach, _LOBE, margin)

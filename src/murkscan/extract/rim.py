@@ -5,11 +5,13 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Bool, Float32, Shaped
 
+from ..types.arrays import Image
 from ..types.background import FixedPattern, Noise
 from ..types.frame import Frame
 
 _WIDEST = 4
-"""Pixels of the widest rim."""
+_DEPTH = _WIDEST + 3
+"""Pixels of the widest rim, and of what is looked at to see that it has ended."""
 _FEW = 9
 """Frames whose median tells."""
 _STEP, _EVEN = 0.08, 0.25
@@ -39,7 +41,7 @@ def _with_rim(
     frames: Sequence[Frame], noise: Noise, pattern: FixedPattern | None
 ) -> FixedPattern | None:
     pictures = [f.image for f in frames if f.image.shape == frames[0].image.shape]
-    middle = np.median(np.stack(pictures[:_FEW]), axis=0).astype(np.float32)
+    middle = _middle_of_border(pictures[:_FEW])
     is_rim = _find_rim(middle, _STEP * noise.white)
     if not is_rim.any():
         return pattern
@@ -48,6 +50,14 @@ def _with_rim(
     levels[is_rim] = (middle - _extend(inside))[is_rim]
     overlay = is_rim if pattern is None or pattern.overlay is None else is_rim | pattern.overlay
     return FixedPattern(frames[0].first_row, levels, overlay)
+
+
+def _middle_of_border(pictures: Sequence[Image]) -> Float32[np.ndarray, "h w"]:
+    """Give the median of each pixel as near to the border as is looked; NaN further in."""
+    middle = np.full(pictures[0].shape, np.nan, np.float32)
+    for side, views in zip(_sides(middle), zip(*map(_sides, pictures), strict=True), strict=True):
+        side[:_DEPTH] = np.median(np.stack([view[:_DEPTH] for view in views]), axis=0)
+    return middle
 
 
 def _find_rim(levels: Float32[np.ndarray, "h w"], step: float) -> Bool[np.ndarray, "h w"]:
@@ -66,9 +76,9 @@ def _sides(
 
 def _rim_width(side: Float32[np.ndarray, "depth along"], step: float) -> int:
     """Measure how many pixels the rim is wide; 0 where there is none."""
-    if len(side) < 2 * _WIDEST + 3:
+    if len(side) < _WIDEST + _DEPTH:
         return 0
-    steps = np.median(np.abs(np.diff(side[: _WIDEST + 3], axis=0)), axis=1)
+    steps = np.median(np.abs(np.diff(side[:_DEPTH], axis=0)), axis=1)
     edge = int(np.argmax(steps[:_WIDEST]))
     even = np.median(steps[edge + 1 :]) < _EVEN * steps[edge]
     return edge + 1 if steps[edge] > step and even else 0

@@ -6,6 +6,8 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Shaped
 
+from .._kernels.white_areas import box_white_areas
+
 _LEAST = 5
 """Pixels across the smallest spot: a smaller one is as round as any short piece of a stripe."""
 _ASPECT = 1.5
@@ -28,20 +30,20 @@ def find_round_spots(
         white: Level from which a pixel is saturated.
         stretch: How much longer along scan lines a pixel is than across.
     """
-    is_white = levels >= white
-    if not is_white.any():
+    rows = np.flatnonzero(levels.max(axis=1, initial=0) >= white)
+    if len(rows) == 0:
         return None
-    _, _, stats, _ = cv2.connectedComponentsWithStats(is_white.astype(np.uint8))
-    boxes = stats[1:, [cv2.CC_STAT_LEFT, cv2.CC_STAT_TOP, cv2.CC_STAT_WIDTH, cv2.CC_STAT_HEIGHT]]
-    width, height = boxes[:, 2], stretch * boxes[:, 3]
-    filled = stats[1:, cv2.CC_STAT_AREA] / (boxes[:, 2] * boxes[:, 3])
+    areas = box_white_areas(levels[rows[0] : rows[-1] + 1], white)
+    areas[:, 1] += rows[0]
+    width, height = areas[:, 2], stretch * areas[:, 3]
+    filled = areas[:, 4] / (areas[:, 2] * areas[:, 3])
     is_round = np.minimum(width, height) >= _LEAST
     is_round &= np.maximum(width, height) <= _ASPECT * np.minimum(width, height)
     is_round &= (filled > _FULL[0]) & (filled < _FULL[1])
     if not is_round.any():
         return None
     spots = np.zeros(levels.shape, np.uint8)
-    for left, top, across, along in boxes[is_round]:
+    for left, top, across, along in areas[is_round, :4]:
         middle = (round(left + across / 2), round(top + along / 2))
         axes = (math.ceil((0.5 + _HALO) * across), math.ceil((0.5 + _HALO) * along))
         cv2.ellipse(spots, middle, axes, 0, 0, 360, 1, cv2.FILLED)

@@ -1,5 +1,6 @@
 """A frame seen along its scan lines: each is a column, whichever way the stripe runs."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -67,6 +68,12 @@ class ScanLines:
         if noise.rows and axis == "y":
             signal = without_rows(signal, noise)
         return cls(frame, axis, levels, signal, noise.white, hidden, slope=slope)
+
+    @classmethod
+    def bare(cls, frame: Frame, axis: Axis, *, slope: float = 0.0) -> "ScanLines":
+        """Look at a frame as it was recorded, holding no picture but its own."""
+        levels = frame.image if axis == "y" else frame.image.T
+        return cls(frame, axis, levels, levels, math.inf, slope=slope)
 
     def binned(self, binning: int) -> "ScanLines":
         """Average pixels along scan lines; what is left over at their ends is left out.

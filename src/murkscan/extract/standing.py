@@ -9,6 +9,7 @@ from jaxtyping import Bool, Float
 
 from .._kernels.ridges import match_ridges, pool_along
 from ..types.arrays import Mask
+from .at_once import map_at_once
 from .markov import Markov
 from .quantiles import quantiles
 from .ridges import Marks, Ridges
@@ -176,10 +177,12 @@ class Standing:
     ) -> tuple[Float[np.ndarray, "lines most"], Float[np.ndarray, "lines most"]]:
         """Count frames whose stripe is elsewhere in the line, with each in its place or not."""
         both, only = np.zeros(self.stand.shape), np.zeros(self.stand.shape)
-        for frame, is_there in zip(self.frames, self.is_there, strict=True):
-            elsewhere = self._is_elsewhere(frame, markov)[:, None]
-            both += elsewhere & is_there & self.stand
-            only += elsewhere & ~is_there & self.stand
+        if not self.stand.any():
+            return both, only
+        told = map_at_once(lambda frame: self._is_elsewhere(frame, markov), self.frames)
+        for elsewhere, is_there in zip(told, self.is_there, strict=True):
+            both += elsewhere[:, None] & is_there & self.stand
+            only += elsewhere[:, None] & ~is_there & self.stand
         return both, only
 
     def _is_elsewhere(self, frame: Ridges, markov: Markov) -> Mask:

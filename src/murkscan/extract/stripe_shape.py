@@ -3,12 +3,14 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from functools import partial
 
 import numpy as np
 from jaxtyping import Float, Shaped
 
 from ..types.arrays import Indices, Scalars
 from ..types.background import Noise, Search, StripeShape
+from .at_once import map_at_once
 from .centres import Tightness, fit_ridges
 from .clutter import learn_response_law
 from .markov import Markov
@@ -101,23 +103,24 @@ class _Learner:
         Gives 1σ of a Gaussian that is as wide.
         """
         few = self.look[:: max(len(self.look) // 6, 1)]
-        counts, widths = [], []
+        counts, widths = list[int](), list[Scalars]()
         length = len(self.look[0].levels)
         binnings = [binning for binning in _BINNINGS if 3 * binning <= length] or [1]
         for binning in binnings:
-            bank = self._bank((_begin_at(_FIRST_WIDTH, binning),))
-            count, measured = 0, [np.zeros(0)]
-            for lines in few:
-                ridges = self._ridges(lines, bank)
-                line, which = self._sure(ridges, 6.0)
-                seen = ridges.lines.binned(binning)
-                middle = np.rint(seen.from_image(ridges.positions[line, which])).astype(int)
-                measured.append(binning * _half_widths(seen.signal, line, middle))
-                count += len(np.unique(line))
-            counts.append(count)
+            measure = partial(self._measure_widths, binning=binning)
+            found, measured = zip(*map_at_once(measure, few), strict=True)
+            counts.append(sum(found))
             widths.append(np.concatenate(measured))
         known = widths[int(np.argmax(np.array(counts) >= _FOUND * max(counts)))]
         return float(np.nanmedian(known)) if np.isfinite(known).any() else _FIRST_WIDTH
+
+    def _measure_widths(self, lines: ScanLines, binning: int) -> tuple[int, Scalars]:
+        """Count the scan lines of a frame that show a stripe, and measure it there."""
+        ridges = self._ridges(lines, self._bank((_begin_at(_FIRST_WIDTH, binning),)))
+        line, which = self._sure(ridges, 6.0)
+        seen = ridges.lines.binned(binning)
+        middle = np.rint(seen.from_image(ridges.positions[line, which])).astype(int)
+        return len(np.unique(line)), binning * _half_widths(seen.signal, line, middle)
 
     def find_others(self, shape: StripeShape) -> list[StripeShape]:
         """Find out which wider looks the stripe has, octaves away from a shape's."""
@@ -127,12 +130,13 @@ class _Learner:
         widths = [w for w in octaves if w <= min(_WIDEST_BAND, length / 12)]
         shapes = (shape, *(_begin(width) for width in widths))
         bank = self._bank(shapes)
-        heights: list[list[Scalars]] = [[np.zeros(0)] for _ in shapes]
-        for lines in self.look[:: max(len(self.look) // 8, 1)]:
+
+        def list_heights(lines: ScanLines) -> list[Scalars]:
             ridges = self._ridges(lines, bank)
-            for number, each in enumerate(shapes):
-                heights[number].append(self._long_heights(ridges, number, each))
-        known = [np.concatenate(each) for each in heights]
+            return [self._long_heights(ridges, *each) for each in enumerate(shapes)]
+
+        few = self.look[:: max(len(self.look) // 8, 1)]
+        known = [np.concatenate(each) for each in zip(*map_at_once(list_heights, few), strict=True)]
         enough = max(_FEW, _SHARE * sum(len(each) for each in known))
         # Where paint is dark, the water's skirt alone is left of a stripe: wide, but fainter.
         usual = np.median(known[0]) if len(known[0]) else 0.0
@@ -181,14 +185,17 @@ class _Learner:
     def _fit_all(self, shapes: tuple[StripeShape, ...], tightness: Tightness) -> list["_Fits"]:
         """Fit the sure ridges of all frames; those of each shape by themselves."""
         bank = self._bank(shapes)
-        parts: list[list[_Fits]] = [[] for _ in shapes]
-        for each in self.look:
+
+        def fit(each: ScanLines) -> list[_Fits]:
             ridges = self._ridges(each, bank)
             lines, which = self._sure(ridges, 0.0)
-            for number, shape in enumerate(shapes):
-                own = ridges.shapes[lines, which] == number
-                parts[number].append(self._fit(ridges, lines[own], which[own], shape, tightness))
-        return [_Fits.concatenate(each) for each in parts]
+            own = [ridges.shapes[lines, which] == number for number in range(len(shapes))]
+            return [
+                self._fit(ridges, lines[some], which[some], shape, tightness)
+                for some, shape in zip(own, shapes, strict=True)
+            ]
+
+        return [_Fits.concatenate(each) for each in zip(*map_at_once(fit, self.look), strict=True)]
 
     def _fit(
         self, ridges: Ridges, lines: Indices, which: Indices, shape: StripeShape, held: Tightness
