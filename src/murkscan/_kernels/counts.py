@@ -13,18 +13,18 @@ def count_levels(image: np.ndarray, counts: np.ndarray) -> None:
 
 
 @njit(cache=True, nogil=True)
-def count_bends(image: np.ndarray, apart: int, counts: np.ndarray) -> None:
-    """Add to `counts` the sizes of second differences along rows of pixels `apart`."""
-    for v in range(image.shape[0]):
+def count_bends(image: np.ndarray, apart: int, every: int, counts: np.ndarray) -> None:
+    """Add to `counts` the sizes of second differences of pixels `apart`, of every so many rows."""
+    for v in range(0, image.shape[0], every):
         for u in range(image.shape[1] - 2 * apart):
             ends = np.int64(image[v, u]) + np.int64(image[v, u + 2 * apart])
             counts[abs(ends - 2 * np.int64(image[v, u + apart]))] += 1
 
 
 @njit(cache=True, nogil=True)
-def count_changes(first: np.ndarray, second: np.ndarray, counts: np.ndarray) -> None:
-    """Add to `counts` the sizes of the differences of two pictures of the same size."""
-    for v in range(first.shape[0]):
+def count_changes(first: np.ndarray, second: np.ndarray, every: int, counts: np.ndarray) -> None:
+    """Add to `counts` the sizes of the differences of two pictures, of every so many rows."""
+    for v in range(0, first.shape[0], every):
         for u in range(first.shape[1]):
             counts[abs(np.int64(second[v, u]) - np.int64(first[v, u]))] += 1
 

@@ -19,11 +19,16 @@ _ALL = 1 << 31
 
 @dataclass(frozen=True, eq=False)
 class Chunk:
-    """Frames that make one part, with a halo of frames on both sides."""
+    """Frames that make one part, with a halo of frames on both sides, until they are taken."""
 
     part: int
     frames: list[Frame] = field(default_factory=list)
     skips: list[Skip] = field(default_factory=list)
+
+    def take_frames(self) -> Iterator[Frame]:
+        """Give the frames in order, and let go of each, so that few are held at once."""
+        while self.frames:
+            yield self.frames.pop(0)
 
     def owns(self, index: int) -> bool:
         """Tell whether a frame belongs to the part, not to its halo."""
@@ -94,9 +99,9 @@ def cut_chunks(
     part = first
     for frame in frames:
         while frame.index >= (part + 1) * CHUNK + halo:
-            yield _cut(part, kept, skips, halo)
-            part += 1
+            chunk, part = _cut(part, kept, skips, halo), part + 1
             kept = [one for one in kept if one.index >= part * CHUNK - halo]
+            yield chunk
         kept.append(frame)
     while kept and part <= kept[-1].index // CHUNK:
         yield _cut(part, kept, skips, halo)

@@ -1,7 +1,7 @@
 """What an extractor gave, looked at before it is believed: it may be one's own."""
 
 import dataclasses
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
@@ -10,10 +10,9 @@ from ..types.frame import Frame
 from ..types.stripe import Stripe
 from .base import AbstractExtractor
 
-_MISCOUNTED = (
-    "{name} must give one stripe a frame, of length 0 where there is none; of {frames} frames it "
-    "gave {given}."
-)
+_ONE_EACH = "{name} must give one stripe a frame, of length 0 where there is none; "
+_TOO_FEW = _ONE_EACH + "it gave {given} and none for frame {frame}."
+_TOO_MANY = _ONE_EACH + "of {frames} frames it gave more."
 _EDGE = 0.5
 """How far a pixel reaches from its centre [px]."""
 
@@ -34,7 +33,7 @@ def require_extractor(extractor: AbstractExtractor) -> None:
 def check_stripes(
     extractor: AbstractExtractor,
     stripes: Iterable[Stripe],
-    frames: Sequence[Frame],
+    frames: Iterable[Frame],
     *,
     size: tuple[int, int],
     laser: int,
@@ -54,10 +53,10 @@ def check_stripes(
     Raises:
         InputError: One of them cannot be; the message names the extractor, the frame and the fault.
     """
-    name, given = type(extractor).__name__, iter(stripes)
-    for count, frame in enumerate(frames):
+    name, given, number = type(extractor).__name__, iter(stripes), 0
+    for number, frame in enumerate(frames, 1):
         if (stripe := next(given, None)) is None:
-            raise InputError(_MISCOUNTED.format(name=name, frames=len(frames), given=count))
+            raise InputError(_TOO_FEW.format(name=name, frame=frame.index, given=number - 1))
         if not isinstance(stripe, Stripe):
             fault = f"is a {type(stripe).__name__}, no Stripe"
         else:
@@ -66,7 +65,7 @@ def check_stripes(
             raise InputError(f"{name}: what it gave for frame {frame.index} {fault}.")
         yield stripe
     if next(given, None) is not None:
-        raise InputError(_MISCOUNTED.format(name=name, frames=len(frames), given="more"))
+        raise InputError(_TOO_MANY.format(name=name, frames=number))
 
 
 def _find_fault(stripe: Stripe, frame: Frame, size: tuple[int, int], laser: int) -> str:

@@ -27,6 +27,8 @@ _QUANTISATION = 1 / math.sqrt(12)
 _GAUSSIAN = 1.4826
 """Standard deviation of Gaussian noise as a multiple of its median absolute value."""
 
+Pictures = Sequence[Shaped[np.ndarray, "_ _"]]
+"""Pictures that may differ in size, as the fields of an odd number of rows do."""
 _APART = 3
 """Distance of the pixels whose differences are taken [px]."""
 
@@ -45,7 +47,8 @@ def learn_noise(frames: Sequence[Frame]) -> Background:
         Immerkær, Fast noise variance estimation, CVIU 64(2), 1996, for noise from second
         differences.
     """
-    within = np.median(map_at_once(lambda frame: _noise_within(frame.image), frames))
+    every = _row_step([frame.image for frame in frames])
+    within = np.median(map_at_once(lambda frame: _noise_within(frame.image, every), frames))
     # Fields come with odd and even rows in turn: only those of the same rows can be compared.
     alike = [[f for f in frames if f.first_row == row] for row in {f.first_row for f in frames}]
     pairs = [
@@ -54,7 +57,7 @@ def learn_noise(frames: Sequence[Frame]) -> Background:
         for first, second in pairwise(same)
         if first.image.shape == second.image.shape
     ]
-    between = map_at_once(lambda pair: _noise_between(*pair), pairs)
+    between = map_at_once(lambda pair: _noise_between(*pair, every), pairs)
     noise = min(within, np.median(between)) if between else within
     return Background(noise=max(float(noise), _QUANTISATION), scale=_find_scale(frames))
 
@@ -65,16 +68,21 @@ def _find_scale(frames: Sequence[Frame]) -> float:
     return float(2 ** max(brightest.bit_length() - 8, 0))
 
 
-def _noise_within(image: Image) -> float:
+def _row_step(images: Pictures) -> int:
+    """Give of how many rows one is looked at, so that no more pixels are than tell."""
+    return math.ceil(sum(image.size for image in images) / _ENOUGH)
+
+
+def _noise_within(image: Image, every: int) -> float:
     # Neighbours share noise where a colour mosaic or an encoder has smoothed them: look further.
     counts = np.zeros(4 * np.iinfo(image.dtype).max + 1, int)
-    count_bends(image, _APART, counts)
+    count_bends(image, _APART, every, counts)
     return _spread(counts) / math.sqrt(6)
 
 
-def _noise_between(first: Image, second: Image) -> float:
+def _noise_between(first: Image, second: Image, every: int) -> float:
     counts = np.zeros(np.iinfo(first.dtype).max + 1, int)
-    count_changes(first, second, counts)
+    count_changes(first, second, every, counts)
     return _spread(counts) / math.sqrt(2)
 
 
@@ -117,8 +125,6 @@ gives, from which an encoder has smoothed it away."""
 _STEP = 1.0
 """Least variance then [grey levels²]: what is left are blocks that differ by a level."""
 
-Pictures = Sequence[Shaped[np.ndarray, "_ _"]]
-"""Pictures that may differ in size, as the fields of an odd number of rows do."""
 Sums = Int32[np.ndarray, " n"]
 Bins = Float[np.ndarray, "bins 3"]
 """Mean level, variance of a pixel, number of differences."""
@@ -137,7 +143,7 @@ def learn_levels(images: Pictures) -> Noise:
     """
     counts = map_at_once(count_levels_of, images)
     white = _learn_white(np.sum(counts, axis=0))
-    every = math.ceil(sum(image.size for image in images) / _ENOUGH)
+    every = _row_step(images)
     level = float(np.median([quantile_of_counts(own, 0.5) for own in counts]))
     near, far = (_learn_law(images, white, lag, every) for lag in _LAGS)
     seen, beyond = (law.fixed + law.gain * level for law in (near, far))

@@ -4,7 +4,7 @@ Which frames are drawn, and which of the drawings stay, follows from the notes o
 so a run that was killed, or lost a part, ends with the same pictures as any other.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 from ..types.arrays import ColourImage
 from ..types.frame import Frame
@@ -20,19 +20,37 @@ _POOREST = 4
 """Overlays kept of frames with the fewest points."""
 
 
-def draw_overlays(
-    found: Sequence[tuple[Frame, Stripe]], note: PartNote, *, step: int
-) -> dict[str, ColourImage]:
-    """Draw the frames of a part that may be chosen to stay, by the names of their pictures."""
-    frames = {frame.index: (frame, stripe) for frame, stripe in found}
-    return {
-        name: draw_stripe(*frames[_frame_of(name)]) for name in name_candidates(note, step=step)
-    }
+class Candidates:
+    """The frames of a part whose drawings may be chosen to stay: no others are held."""
+
+    def __init__(self, step: int) -> None:
+        """Begin with none.
+
+        Args:
+            step: See `name_candidates`.
+        """
+        self._step = step
+        self._regular = list[tuple[Frame, Stripe]]()
+        self._poorest: tuple[Frame, Stripe] | None = None
+
+    def add(self, frame: Frame, stripe: Stripe) -> None:
+        """Look at the part's next frame."""
+        if _is_regular(frame.index, self._step):
+            self._regular.append((frame, stripe))
+        elif self._poorest is None or len(stripe) < len(self._poorest[1]):
+            self._poorest = frame, stripe
+
+    def draw(self) -> dict[str, ColourImage]:
+        """Draw them, by the names of their pictures; see `name_candidates`."""
+        drawings = {f"{frame.index:06d}": (frame, stripe) for frame, stripe in self._regular}
+        if self._poorest is not None:
+            drawings[f"{self._poorest[0].index:06d}{_POOR}"] = self._poorest
+        return {name: draw_stripe(*found) for name, found in drawings.items()}
 
 
 def name_candidates(note: PartNote, *, step: int) -> list[str]:
     """Name every step-th frame of a part, and its poorest one that is not among them."""
-    regular = [index for index in note.frames if index % step == step // 2]
+    regular = [index for index in note.frames if _is_regular(index, step)]
     others = [
         (count, index)
         for index, count in zip(note.frames, note.points, strict=True)
@@ -57,6 +75,10 @@ def choose_overlays(notes: Iterable[PartNote], *, step: int) -> set[str]:
     regular = [name for name in sorted(drawn) if not name.endswith(_POOR)]
     stride = -(-len(regular) // _REGULAR) or 1
     return {*poor[:_POOREST], *regular[stride // 2 :: stride]}
+
+
+def _is_regular(index: int, step: int) -> bool:
+    return index % step == step // 2
 
 
 def _frame_of(overlay: str) -> int:

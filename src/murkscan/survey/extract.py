@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
+from itertools import tee
 
 from ..capture import AbstractRecording
 from ..capture.chunks import CHUNK, Chunk, Run, missing_runs, read_missing, read_run
@@ -10,10 +11,11 @@ from ..distribute import AbstractExecutor, Threads
 from ..errors import InputError
 from ..extract import AbstractExtractor, check_stripes, require_extractor
 from ..extract.lasers import check_extractor, join_remarks
-from ..extract.overlay_choice import choose_overlays, draw_overlays, name_candidates
+from ..extract.overlay_choice import Candidates, choose_overlays, name_candidates
 from ..project import EXTRACT, ExtractResult, PartNote, Project, describe
 from ..types.arrays import ColourImage
 from ..types.background import Background
+from ..types.frame import Frame
 from ..types.rig import Rig
 from ..types.stripe import Stripe
 from .progress import Progress, silent
@@ -129,29 +131,31 @@ class _Job:
 
     def find(self, chunk: Chunk) -> _Part:
         """Find the stripes of one part."""
-        each = [self._find_one(chunk, laser) for laser in self.backgrounds]
-        found = [
-            (frame, Stripe.concatenate(stripes))
-            for frame, *stripes in zip(chunk.frames, *each, strict=True)
-            if chunk.owns(frame.index)
-        ]
-        stripe = Stripe.concatenate([stripe for _, stripe in found])
+        frames, *streams = tee(chunk.take_frames(), 1 + len(self.backgrounds))
+        each = [self._find_one(*given) for given in zip(streams, self.backgrounds, strict=True)]
+        moments, stripes = list[tuple[int, float]](), list[Stripe]()
+        candidates = Candidates(self.overlay_step)
+        for frame, *found in zip(frames, *each, strict=True):
+            if chunk.owns(frame.index):
+                moments.append((frame.index, frame.time))
+                stripes.append(Stripe.concatenate(found))
+                candidates.add(frame, stripes[-1])
+        stripe = Stripe.concatenate(stripes)
         note = PartNote(
-            frames=tuple(frame.index for frame, _ in found),
-            times=tuple(frame.time for frame, _ in found),
-            points=tuple(len(stripe) for _, stripe in found),
+            frames=tuple(index for index, _ in moments),
+            times=tuple(time for _, time in moments),
+            points=tuple(map(len, stripes)),
             skips=tuple((skip.index, skip.count, skip.reason) for skip in chunk.skips),
             points_of=tuple(int((stripe.laser == laser).sum()) for laser in self.backgrounds),
         )
-        drawings = draw_overlays(found, note, step=self.overlay_step)
-        return _Part(chunk.part, stripe, note, drawings)
+        return _Part(chunk.part, stripe, note, candidates.draw())
 
-    def _find_one(self, chunk: Chunk, laser: int) -> list[Stripe]:
+    def _find_one(self, frames: Iterator[Frame], laser: int) -> Iterator[Stripe]:
         """Find one laser's stripe in each frame."""
-        background = self.backgrounds[laser]
-        given = self.extractor.extract(chunk.frames, self.rig, background, laser=laser)
-        size = self.rig.camera.size
-        return list(check_stripes(self.extractor, given, chunk.frames, size=size, laser=laser))
+        background, size = self.backgrounds[laser], self.rig.camera.size
+        seen, given = tee(frames)
+        stripes = self.extractor.extract(given, self.rig, background, laser=laser)
+        return check_stripes(self.extractor, stripes, seen, size=size, laser=laser)
 
     def save(self, part: _Part) -> int:
         """Write one part: its overlays, its stripes, and last its note."""
