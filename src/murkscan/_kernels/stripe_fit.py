@@ -89,6 +89,7 @@ def fit_stripes(
     p, step = np.empty(_SIZE), np.empty(_SIZE)
     matrix = np.empty((_SIZE, _SIZE))
     half = skirts.shape[1] // 2
+    rows = np.empty((_SIZE + 1, 2 * half + 1))
     for i in range(len(lines)):
         middle = int(np.rint(starts[i]))
         low, high = max(middle - half, 0), min(middle + half, len(levels) - 1)
@@ -100,7 +101,7 @@ def fit_stripes(
         variance = -1.0
         for turn in range(_MOST_STEPS):
             is_enough = _normal_equations(
-                raw, scan, skirt, middle - low, p, noise, shape, matrix, step
+                raw, scan, skirt, middle - low, p, noise, shape, matrix, step, rows
             )
             if not is_enough or not solve(matrix, step):
                 variance = -1.0
@@ -142,41 +143,48 @@ def _take_step(p: np.ndarray, step: np.ndarray) -> None:
     p[1] = max(p[1], 0.05)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"})
+def _dot(first: np.ndarray, second: np.ndarray, count: int) -> float:
+    total = 0.0
+    for v in range(count):
+        total += first[v] * second[v]
+    return total
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def _normal_equations(
     raw: np.ndarray, scan: np.ndarray, skirt: np.ndarray, middle: int, p: np.ndarray,
-    noise: np.ndarray, shape: np.ndarray, matrix: np.ndarray, right: np.ndarray,
+    noise: np.ndarray, shape: np.ndarray, matrix: np.ndarray, right: np.ndarray, rows: np.ndarray,
 ) -> bool:  # fmt: skip
     """Fill the normal equations at p, with the priors; white pixels are left out.
 
-    False where too few pixels are left.
+    `rows` has room for each parameter's derivatives, and what the model misses, by pixel, divided
+    by the noise. False where too few pixels are left.
     """
-    matrix[:] = 0.0
-    right[:] = 0.0
-    slopes = np.empty(_SIZE)
     width = np.exp(p[2])
     count = 0
     for v in range(len(scan)):
         level = float(scan[v])
-        if raw[v] >= noise[4]:
-            continue
         along = float(v - middle)
         x = (along - p[0]) / width
         core = np.exp(-0.5 * x * x)
-        slopes[0] = p[1] * core * x / width
-        slopes[1] = core + p[3] * skirt[v]
-        slopes[2] = p[1] * core * x * x
-        slopes[3] = p[1] * skirt[v]
-        slopes[4], slopes[5], slopes[6] = 1.0, along, along * along
-        model = p[1] * slopes[1] + p[4] + p[5] * along + p[6] * slopes[6]
+        profile = core + p[3] * skirt[v]
+        model = p[1] * profile + p[4] + p[5] * along + p[6] * along * along
         lit = min(max(model + float(raw[v]) - level, 0.0), noise[4])
-        weight = 1.0 / max(noise[0] + lit * (noise[1] + lit * noise[2]), noise[3])
-        off = level - model
-        count += 1
-        for a in range(_SIZE):
-            right[a] += weight * slopes[a] * off
-            for b in range(a + 1):
-                matrix[a, b] += weight * slopes[a] * slopes[b]
+        root = 0.0
+        if raw[v] < noise[4]:
+            root = 1.0 / np.sqrt(max(noise[0] + lit * (noise[1] + lit * noise[2]), noise[3]))
+            count += 1
+        rows[0, v] = root * p[1] * core * x / width
+        rows[1, v] = root * profile
+        rows[2, v] = root * p[1] * core * x * x
+        rows[3, v] = root * p[1] * skirt[v]
+        rows[4, v], rows[5, v], rows[6, v] = root, root * along, root * along * along
+        rows[7, v] = root * (level - model)
+    for a in range(_SIZE):
+        right[a] = _dot(rows[a], rows[7], len(scan))
+        for b in range(a + 1):
+            matrix[a, b] = _dot(rows[a], rows[b], len(scan))
     _add_priors(p, shape, matrix, right)
     return count >= _FEWEST
 
