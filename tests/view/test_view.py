@@ -59,6 +59,20 @@ def test_the_model_fills_the_picture_and_is_not_cut_off(name):
     assert not mask[:, [0, -1]].any()
 
 
+def test_a_part_drawn_like_the_whole_lies_where_it_lies_there():
+    whole, part = box(0.4, 0.2, 0.1), box(0.1, 0.05, 0.1, at=(0.1, 0.0, 1.0))
+    columns = [
+        np.nonzero(object_pixels(render(one, VIEWS["front"], like=whole)).any(axis=0))[0]
+        for one in (whole, part)
+    ]
+    scale = np.ptp(columns[0]) / 0.4
+    assert np.ptp(columns[1]) == pytest.approx(0.1 * scale, abs=2)
+    aside = np.mean(columns[1]) - np.mean(columns[0])
+    assert aside == pytest.approx(0.1 * scale, abs=2)
+    beyond = box(0.4, 0.2, 0.1, at=(9.0, 0.0, 1.0))
+    assert not object_pixels(render(beyond, VIEWS["front"], like=whole)).any()
+
+
 def test_the_front_is_as_the_camera_sees_it():
     """A small box at the lower right of a big one is there in the picture too."""
     big, small = box(0.4, 0.3, 0.1), box(0.05, 0.05, 0.05, at=(0.3, 0.2, 1.0))

@@ -97,7 +97,9 @@ def run_demo(out: Path, *, progress: Progress = silent) -> tuple[Judged, Judged]
     ours = _scan(out, "scan", Murk(), "murk: noise, chain and fit", progress)
     paper = _scan(out, "paper", ThresholdSkeleton(), "the paper: threshold and skeleton", progress)
     for one in (paper, ours):
-        write_image(out / f"{one.project.root.name}.png", _draw_hull(one.project))
+        write_image(
+            out / f"{one.project.root.name}.png", _draw_hull(one.project, like=ours.project)
+        )
     save_text(out / "index.html", _page(ours, paper))
     return ours, paper
 
@@ -132,13 +134,14 @@ def _of(name: str, progress: Progress) -> Progress:
     return lambda stage, done, total: progress(f"{name}: {stage}", done, total)
 
 
-def _draw_hull(project: Project) -> ColourImage:
-    """Draw the hull as the camera sees it, turned to lie along the picture."""
+def _draw_hull(project: Project, *, like: Project) -> ColourImage:
+    """Draw the hull as the camera sees it, turned to lie along the picture, as another scan's."""
     front = front_view(find_trajectory(project))
     right, down, away = front.view_from_world
     x, y, z = (float(part) for part in away)
     view = View("from below", np.stack([down, -right, away]), front.eye)
-    return render(project.load_mesh(), view, colours=Depth((x, y, z), front.start), size=_SIZE)
+    depth = Depth((x, y, z), front.start)
+    return render(project.load_mesh(), view, colours=depth, size=_SIZE, like=like.load_mesh())
 
 
 def _page(ours: Judged, paper: Judged) -> str:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .._kernels.rasterise import average_samples, place_samples
-from ..types.arrays import ColourImage
+from ..types.arrays import ColourImage, Points
 from ..types.cloud import PointCloud
 from ..types.mesh import Mesh
 from .base import AbstractColours, Legend
@@ -41,6 +41,7 @@ def render(
     *,
     colours: AbstractColours | None = None,
     size: tuple[int, int] = (1280, 960),
+    like: Mesh | PointCloud | None = None,
 ) -> ColourImage:
     """Draw a surface, without perspective, with a scale bar and, for its colours, a colour bar.
 
@@ -52,26 +53,35 @@ def render(
         view: From where.
         colours: How to colour it; None: plain.
         size: Width and height of the picture [px].
+        like: Another surface, whose place, scale and range of colours the picture shall have, so
+            that two can be compared; what lies outside is cut off.
 
     Raises:
         NotEnoughData: There is nothing to draw.
         InputError: A point is not finite, or the picture is below 64 x 64 pixels.
     """
-    return fit_and_draw(Subject.of(surface), view, colours or Plain(), size).write()
+    shown = None if like is None else Subject.of(like).points
+    return fit_and_draw(Subject.of(surface), view, colours or Plain(), size, shown).write()
 
 
 def fit_and_draw(
-    subject: Subject, view: View, colours: AbstractColours, size: tuple[int, int]
+    subject: Subject,
+    view: View,
+    colours: AbstractColours,
+    size: tuple[int, int],
+    shown: Points | None = None,
 ) -> Drawing:
-    """Draw what is seen from one side, as large as the picture allows."""
-    points = subject.points @ view.view_from_world.T
-    has_bar = colours.legend(subject.points) is not None
-    return draw(subject, view, colours, Window.around(points, size, with_bar=has_bar))
+    """Draw what is seen from one side, as large as the picture allows with all points shown."""
+    shown = subject.points if shown is None else shown
+    legend = colours.legend(shown)
+    window = Window.around(shown @ view.view_from_world.T, size, with_bar=legend is not None)
+    return draw(subject, view, colours, window, legend)
 
 
-def draw(subject: Subject, view: View, colours: AbstractColours, window: Window) -> Drawing:
+def draw(
+    subject: Subject, view: View, colours: AbstractColours, window: Window, legend: Legend | None
+) -> Drawing:
     """Draw what is seen in a window; several threads may do so at once."""
-    legend = colours.legend(subject.points)
     points = subject.points @ view.view_from_world.T
     relief = subject.look(view, window.as_samples(points), window)
     return Drawing(_develop(relief, view, window, colours, legend), view, window, legend)

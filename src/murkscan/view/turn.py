@@ -54,7 +54,7 @@ def draw_turn(
     with ThreadPoolExecutor(_THREADS) as pool:
         for start in range(0, len(jobs), 2 * _THREADS):
             some = jobs[start : start + 2 * _THREADS]
-            for drawing in pool.map(lambda job: draw(subject, job[0], Plain(), job[1]), some):
+            for drawing in pool.map(lambda job: draw(subject, job[0], Plain(), job[1], None), some):
                 yield drawing.image
 
 
