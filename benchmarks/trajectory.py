@@ -76,12 +76,15 @@ def main() -> None:
     kept = Kept(given.keep, time.monotonic() + given.seconds)
     chosen = [n for n in CASES if not given.cases or any(c in n for c in given.cases.split(","))]
     done: dict[str, list] = {name: [] for name in chosen}
-    try:
-        # Seed by seed, so that a run that is stopped has something of every case.
-        for seed in range(given.seeds):
-            for name in chosen:
+    is_stopped = False
+    # Seed by seed, so that a run that is stopped has something of every case.
+    for seed in range(given.seeds):
+        for name in chosen:
+            try:
                 done[name].append(run_kept(kept, name, seed))
-    except TimeoutError:
+            except TimeoutError:
+                is_stopped = True
+    if is_stopped:
         print("stopped; run the same command again to go on")
     tell_all(done)
 
