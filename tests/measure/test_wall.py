@@ -92,15 +92,16 @@ def test_a_curve_states_how_far_it_is_off(common, alike):
     assert 0.85 < np.sqrt(np.mean(np.square(ratios))) < 1.18
 
 
-def test_a_strip_of_which_a_part_was_seen_tells_its_middle():
+def test_a_strip_of_which_a_part_was_seen_tells_where_that_lies():
     sample, located, _ = strip(0, 0.0)
     # The wall leans by 0.3 along; of the upper half of the strip only the left third was seen.
     seen = (located[:, 1] < 2) | (located[:, 0] < 0.116)
     located[:, 2] += 0.3 * located[:, 0]
     some = Sample.from_cloud(sample.cloud[seen])
     curve = find_deflection(some, located[seen], FLAT, along=0.123, width=0.1, cell=0.02)
-    truth = 0.03 * np.exp(-((curve.height - 2) ** 2) / 2) + 0.31 * 0.123
-    # The left third alone lies 15 mm aside, by which it is 4.6 mm off.
+    truth = 0.03 * np.exp(-((curve.height - 2) ** 2) / 2) + 0.31 * curve.places
+    # The left third alone lies 15 mm aside, by which it would be 4.6 mm off.
+    assert np.ptp(curve.places) == pytest.approx(0.015, abs=2e-3)
     assert np.abs(curve.distance - truth).max() < 3e-4
 
 

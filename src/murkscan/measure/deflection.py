@@ -36,6 +36,8 @@ class Deflection:
 
     along: float
     """Where the strip's middle is [m]."""
+    places: Scalars
+    """Along of each place [m]: beside the strip's middle where only a part of it was seen."""
     height: Scalars
     """Of each place [m]."""
     distance: Scalars
@@ -59,10 +61,8 @@ def find_deflection(
 ) -> Deflection | None:
     """Follow a strip of the wall up its height.
 
-    Each place is the mean of the points of a piece of the strip, as it would be in the strip's
-    middle: where only a part of the strip was seen, how the wall leans along counts. How it errs is
-    told from how the points lie about a surface that follows them smoothly, neighbours erring
-    together.
+    Each place is the mean of the points of a piece of the strip. How it errs is told from how the
+    points lie about a surface that follows them smoothly, neighbours erring together.
 
     Args:
         sample: The scan's points.
@@ -77,87 +77,62 @@ def find_deflection(
     """
     inside = np.flatnonzero(np.abs(located[:, 0] - along) <= width / 2)
     inside = inside[np.argsort(located[inside, 1], kind="stable")]
-    height, distance = located[inside, 1], located[inside, 2]
-    piece = np.floor(height / cell).astype(int)
+    piece = np.floor(located[inside, 1] / cell).astype(int)
     number, first, counts = np.unique(piece, return_index=True, return_counts=True)
     full = counts >= _FEWEST
     if not full.any():
         return None
-    found = _scatter(located[inside], first, counts, cell, along)
+    errors, variances = _scatter(located[inside], first, counts, cell)
     groups = [np.arange(a, a + n) for a, n in zip(first[full], counts[full], strict=True)]
     profile, line = sample.profile[inside], sample.line[inside]
-    own = variances_of_means(groups, found.errors, found.variances, profile, line)
-    left = np.array([found.errors[group].mean() for group in groups])
-    own *= 1 + counts[full] * found.lean_variances[full]
+    own = variances_of_means(groups, errors, variances, profile, line)
+    left = np.array([errors[group].mean() for group in groups])
     own *= _widen(left, own, number[full])
+    means = np.array([located[inside[group]].mean(axis=0) for group in groups])
     return Deflection(
         along,
-        np.array([height[group].mean() for group in groups]),
-        np.array([distance[group].mean() for group in groups]) - found.lean[full],
+        means[:, 0],
+        means[:, 1],
+        means[:, 2],
         np.sqrt(own),
         _common(sample, located, frame, [inside[group] for group in groups]),
         counts[full],
     )
 
 
-@dataclass(frozen=True, eq=False)
-class _Scatter:
-    """How points lie about a surface that follows the strip smoothly."""
-
-    errors: Scalars
-    """Distance of each point from it [m]."""
-    variances: Scalars
-    """Variance of the points around each [m²]."""
-    lean: ValuesOfPieces
-    """How far each piece's mean is off because its points lie aside of the strip's middle [m]."""
-    lean_variances: ValuesOfPieces
-    """Variance of that, as a share of the variance of a point."""
-
-
 def _scatter(
-    located: Points, first: OfPieces, counts: OfPieces, cell: float, along: float
-) -> _Scatter:
-    """Fit a surface round each piece.
+    located: Points, first: OfPieces, counts: OfPieces, cell: float
+) -> tuple[Scalars, Scalars]:
+    """Give how far each point lies from a smooth surface, and the variance of the points around.
 
     Args:
         located: The strip's points, from below upwards [m].
         first: The first point of each piece.
         counts: Points of each piece.
         cell: Height of a piece [m].
-        along: Middle of the strip [m].
     """
     errors, variances = np.zeros(len(located)), np.zeros(len(located))
-    lean = np.zeros((len(first), 2))
-    for number, (start, count) in enumerate(zip(first, counts, strict=True)):
-        middle = located[start : start + count].mean(axis=0)
+    for start, count in zip(first, counts, strict=True):
+        middle = float(located[start : start + count, 1].mean())
         ends = np.searchsorted(
-            located[:, 1], [middle[1] - _AROUND * cell, middle[1] + _AROUND * cell]
+            located[:, 1], [middle - _AROUND * cell, middle + _AROUND * cell]
         ).tolist()
-        around = slice(*ends)
-        mine = slice(start - ends[0], start - ends[0] + count)
-        left, slope = _leave(located[around], float(middle[1]), cell)
-        errors[start : start + count] = left[mine]
+        left = _leave(located[slice(*ends)], middle, cell)
+        errors[start : start + count] = left[start - ends[0] :][:count]
         degrees = max(len(left) - _TERMS, 1)
         variances[start : start + count] = (left**2).sum() / degrees
-        aside = (middle[0] - along) / cell
-        lean[number] = aside * slope[0], aside**2 * slope[1]
-    return _Scatter(errors, variances, *lean.T)
+    return errors, variances
 
 
-def _leave(located: Points, middle: float, cell: float) -> tuple[Scalars, tuple[float, float]]:
-    """Give what a surface leaves that bends with the height and leans along the wall.
-
-    And how it leans there, a cell, with the variance of that over the variance of a point.
-    """
+def _leave(located: Points, middle: float, cell: float) -> Scalars:
+    """Give what a surface leaves that bends with the height and leans along the wall."""
     x = (located[:, 0] - located[:, 0].mean()) / cell
     y = (located[:, 1] - middle) / cell
     terms = np.stack([np.ones_like(x), y, y * y, y**3, x, x * y], axis=1)
-    is_bare = len(located) <= _FEWEST
-    terms = terms[:, :1] if is_bare else terms
+    if len(located) <= _FEWEST:
+        terms = terms[:, :1]
     inverse = np.linalg.pinv(terms.T @ terms, hermitian=True)
-    found = inverse @ (terms.T @ located[:, 2])
-    slope = (0.0, 0.0) if is_bare else (float(found[4]), float(inverse[4, 4]))
-    return located[:, 2] - terms @ found, slope
+    return located[:, 2] - terms @ (inverse @ (terms.T @ located[:, 2]))
 
 
 def _widen(left: ValuesOfPieces, own: ValuesOfPieces, piece: OfPieces) -> ValuesOfPieces:
@@ -182,7 +157,7 @@ def _widen(left: ValuesOfPieces, own: ValuesOfPieces, piece: OfPieces) -> Values
     if not lags:
         seen[0] = 1.0
     alike = np.linalg.lstsq(_what_is_left(lags), seen, rcond=None)[0]
-    # Neighbours that err alike can only have hidden more, not less.
+    # Few pieces, or such without noise, may tell ratios that cannot be.
     ratios = np.clip(alike[1:] / max(alike[0], 1e-300), -1.0, 1.0)
     follow = [_share_left(piece - number, ratios) for number in piece.tolist()]
     return seen[0] / np.maximum(follow, 1 - _MOST_TAKEN)

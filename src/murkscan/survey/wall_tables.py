@@ -56,8 +56,7 @@ def name_system(drawn: DrawnWall) -> str:
 
 def places_of(curve: Deflection) -> Points:
     """Give along, height and distance of a curve's places [m]."""
-    along = np.full(len(curve.height), curve.along)
-    return np.stack([along, curve.height, curve.distance], axis=1)
+    return np.stack([curve.places, curve.height, curve.distance], axis=1)
 
 
 def box_of(one: Anomaly) -> tuple[float, float, float, float]:
@@ -87,11 +86,11 @@ def curve_rows(drawn: DrawnWall) -> list[list[str | int | float]]:
             value = float(curve.distance[k])
             ends = (value, value - float(half[k]), value + float(half[k]))
             shared = "" if common is None else round(1e3 * float(common[k]), 4)
+            place = [round(float(part[k]), 4) for part in (curve.places, curve.height)]
             mm = [round(1e3 * one, 4) for one in (*ends, float(curve.sigma_own[k]))]
             rows.append(
-                [number, round(curve.along, 4), round(float(curve.height[k]), 4), mm[0], mm[3],
-                 shared, mm[1], mm[2], int(curve.points[k]), *where]
-            )  # fmt: skip
+                [number, *place, mm[0], mm[3], shared, mm[1], mm[2], int(curve.points[k]), *where]
+            )
     return rows
 
 
