@@ -16,6 +16,8 @@ _REACH, _FARTHEST = 0.8, 4.0
 module wide."""
 _STEP = 0.25
 """Distance of places across an edge [px]."""
+_LIT = 0.95
+"""Share of the pixels that are darker than the laser's line."""
 _CLEAR = 0.12
 """Share of an edge at either end that is left out: blur rounds the corners."""
 
@@ -58,7 +60,7 @@ def find_markers(picture: Image, dictionary: cv2.aruco.Dictionary) -> dict[int, 
     settings = cv2.aruco.DetectorParameters()
     settings.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_CONTOUR
     detector = cv2.aruco.ArucoDetector(dictionary, settings)
-    corners, numbers, _ = detector.detectMarkers(_as_8_bit(picture))
+    corners, numbers, _ = detector.detectMarkers(_stretch(picture))
     if numbers is None:
         return {}
     called, modules = numbers.ravel().tolist(), dictionary.markerSize + 2
@@ -121,7 +123,10 @@ def _meet(first: Corners, second: Corners) -> Place:
     return first[0] + share * (first[1] - first[0])
 
 
-def _as_8_bit(picture: Image) -> Image:
-    if picture.dtype == np.uint8:
-        return picture
-    return (picture * (255.0 / max(int(picture.max()), 1))).astype(np.uint8)
+def _stretch(picture: Image) -> Image:
+    """Give a picture of 8 bits in which what a lamp lights is bright, however bright the laser is.
+
+    OpenCV tells black from white by some grey levels.
+    """
+    white = max(float(np.quantile(picture[::4, ::4], _LIT)), 1.0)
+    return np.clip(picture * (255 / white), 0, 255).astype(np.uint8)
