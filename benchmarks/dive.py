@@ -58,7 +58,8 @@ def main() -> None:
     figures += compare_flaws(given.work, dive, way)
     sizes = [float(size) for size in given.gigabytes.split(",")]
     figures += measure_memory(given.work, dive, sizes)
-    tell("dive", "A dive in the files that vehicles write", figures, note=NOTE)
+    note = NOTE.replace("SIZES", given.gigabytes)
+    tell("dive", "A dive in the files that vehicles write", figures, note=note)
     shutil.rmtree(given.work)
 
 
@@ -75,7 +76,8 @@ library and goes through `murkscan extract --extractor gray-gravity`, `triangula
   by itself, so it is given by `--time-offset-s` in two of the rows. One laser; nothing is adjusted.
 - *memory*: the largest resident set of a process beyond that of one which only imports the same;
   listing a whole file, and reading a hundred pictures at its end and 48 spread over it. Times are
-  of a machine with two cores that was busy with other work, and vary by a factor of three.
+  of a machine with two cores that was busy with other work, and vary by a factor of three. Sizes
+  are those of `--gigabytes SIZES`.
 """
 
 
