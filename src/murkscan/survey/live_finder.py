@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ..capture import ArrivedFrame
-from ..distribute import AbstractExecutor
+from ..distribute import AbstractExecutor, Serial
 from ..extract import AbstractExtractor
 from ..live import Look, Mailbox, PictureWatch, SpreadFrames
 from ..triangulate import AbstractTriangulation, triangulate
@@ -83,7 +83,7 @@ class LiveFinder:
             extractor: The way to find the stripe.
             method: The way from pixels to points.
             laser: Number of the laser whose stripe is looked for.
-            learner: Who learns; a process of its own leaves the finding alone.
+            learner: Who learns anew; a process of its own leaves the finding alone.
             stale: Age from which a frame is dropped while others wait [s].
         """
         self.frames = Mailbox[ArrivedFrame](_WAITING)
@@ -199,7 +199,9 @@ class LiveFinder:
                 self._learn_next.clear()
                 if self.found.is_done or self.frames.is_done:
                     return
-                frames = self._spread.frames()
-                self.background = next(self._learner.map(task, [frames]))
+                # Nothing is found yet that the first learning could hold up, and a process takes
+                # longer to start than it takes to learn.
+                learner = Serial() if self.background is None else self._learner
+                self.background = next(learner.map(task, [self._spread.frames()]))
         except Exception as error:  # whatever it is, the recording goes on
             self.failure = f"The preview has ended ({error}); the recording goes on."
