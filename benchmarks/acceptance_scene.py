@@ -1,10 +1,10 @@
 """Two balls, a plate and a step in one picture, and what an acceptance test says of them."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import tomlkit
-from measure import scan
+from measure_scene import as_plain, crop, scan
 
 from murkscan.measure import (
     Ball,
@@ -15,8 +15,7 @@ from murkscan.measure import (
     measure_step,
     trust_plane,
 )
-from murkscan.simulate import Scene, Simulator, parse_scene, read_scene, simulate_frames
-from murkscan.types.quantity import Quantity
+from murkscan.simulate import Scene, parse_scene, read_scene, simulate_frames
 
 RADIUS, APART, STEP, TREAD = 40.0, 400.0, 20.0, 45.0
 """Sizes of the artefacts [mm]."""
@@ -24,8 +23,6 @@ DEPTH, ACROSS = 880.0, 110.0
 """Distance of the middle of all, and the camera's travel [mm]."""
 RATE_HZ = {"PAL": 25.0, "1920 × 1200": 50.0}
 """Pictures a second: fields of PAL and pictures of the other then come equally often."""
-MARGIN = 48
-"""Rows of the picture that are drawn above and below the stripe [px]."""
 BIN, HALF = 2e-3, 2.0
 """Width of a bin of distances, and how far bins reach [mm]."""
 
@@ -115,19 +112,6 @@ def sheet_crosses(scene: Scene) -> float:
     return float(-(plane.distance + plane.normal[2] * DEPTH / 1e3) / plane.normal[1])
 
 
-def crop(scene: Scene) -> Scene:
-    """Keep the rows in which a stripe may lie, an even number of them from an even one on."""
-    simulator = Simulator.of(scene)
-    seen = np.linspace(0, len(scene) - 1, 5).astype(int)[1:4]
-    rows = np.concatenate([simulator.draw_frame(int(i)).stripe.pixels[:, 1] for i in seen])
-    camera = scene.rig.camera
-    low = max(int(rows.min() - MARGIN) // 2 * 2, 0)
-    high = min(int(rows.max() + MARGIN) // 2 * 2, camera.size[1])
-    u, v = camera.principal_point
-    camera = replace(camera, size=(camera.size[0], high - low), principal_point=(u, v - low))
-    return replace(scene, rig=replace(scene.rig, camera=camera))
-
-
 def run(case: Case) -> dict[str, dict[str, object]]:
     """Scan it, and give of each number: error, half width, and how distances are spread [mm]."""
     scene = make_scene(case)
@@ -154,10 +138,6 @@ def around(sample: Sample, middle: np.ndarray, within: float) -> Sample:
     """Take the points within so many millimetres of a place."""
     x, y, z = (middle / 1e3).tolist()
     return sample[Ball((x, y, z), within / 1e3).contains(sample.cloud.points)]
-
-
-def as_plain(found: Quantity, truth: float) -> dict[str, object]:
-    return {"error": 1e3 * found.value - truth, "half_width": 1e3 * found.half_width}
 
 
 def spread(distances: np.ndarray) -> dict[str, object]:

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy.ndimage import gaussian_filter
+from scipy.ndimage import gaussian_filter, gaussian_filter1d
 
 from murkscan.extract import Murk
 from murkscan.types.camera import Camera
@@ -41,18 +41,19 @@ def _film(light, *, slope=0.0, blur=0.0, along=0.0):
 
 
 def _find(frames, *, slope=0.0):
-    """Give scan line, error and sigma of each centre, and the shape that was learnt."""
+    """Give error, sigma, scan line and what was put back of each centre, and the shape learnt."""
     murk = Murk()
     background = murk.learn(frames, RIG)
-    parts = [np.zeros((0, 3))]
+    parts = [np.zeros((0, 4))]
     for stripe in murk.extract(frames, RIG, background):
         line = stripe.pixels[:, 0].astype(int)
         error = stripe.pixels[:, 1] - _surface(int(stripe.frame[0]), slope)[line]
-        parts.append(np.stack([line, error, stripe.sigma], axis=1))
-    line, error, sigma = np.concatenate(parts).T
+        parts.append(np.stack([error, stripe.sigma, line, stripe.blur_shift], axis=1))
+    error, sigma, line, put_back = np.concatenate(parts).T
     inner = (line >= 8) & (line < LENGTH - 8)
     assert inner.sum() > 0.9 * FRAMES * (LENGTH - 16)
-    return error[inner], sigma[inner], background.shapes[0]
+    found = (one[inner] for one in (error, sigma, line.astype(int), put_back))
+    return *found, background.shapes[0]
 
 
 @pytest.mark.parametrize("slope", [0.0, 0.3])
@@ -63,17 +64,21 @@ def test_paint_pulls_no_slanted_stripe_and_sigma_holds(slope):
     to 4 points.
     """
     paint = 90.0 * np.exp(0.8 * np.sin(LINES / 1.5) * np.sin(LINES / 23.0))
-    error, sigma, shape = _find(_film(paint, slope=slope, blur=BLUR), slope=slope)
+    film = _film(paint, slope=slope, blur=BLUR)
+    error, sigma, line, put_back, shape = _find(film, slope=slope)
     assert 0.60 < np.mean(np.abs(error) < sigma) < 0.80
     assert np.abs(error).mean() < 0.015
     # Over as many scan lines as tell the change of light, half of this paint's is averaged out.
     assert slope == 0.0 or BLUR**2 < shape.blur < 2.0 * BLUR**2
+    # And what was put back is told.
+    drawn = slope * BLUR**2 * np.gradient(np.log(gaussian_filter1d(paint, BLUR)))[line]
+    assert np.sum(put_back * drawn) == pytest.approx(np.sum(drawn**2), rel=0.3)
 
 
 @pytest.mark.parametrize(("along", "least", "most"), [(0.0, 1.0, 1.4), (0.8, 1.6, 3.5)])
 def test_noise_that_neighbours_share_is_learnt_with_its_length(along, least, most):
     """A Gaussian of 1σ a leaves noise alike over 2 √π a lines, 2.8 here."""
-    error, sigma, shape = _find(_film(np.full(LENGTH, 60.0), along=along))
+    error, sigma, _, _, shape = _find(_film(np.full(LENGTH, 60.0), along=along))
     assert least <= shape.length <= most
     assert 0.60 < np.mean(np.abs(error) < sigma) < 0.80
 

@@ -2,13 +2,21 @@
 
 import numpy as np
 import pytest
-from scipy.ndimage import gaussian_filter1d
 
-from murkscan.geometry.stripe_blur import Sight, blur_moves, is_readable, sheet_moves
+from murkscan.geometry.sphere_fit import fit_sphere
+from murkscan.geometry.stripe_blur import (
+    Sight,
+    blur_moves,
+    is_readable,
+    loss_moves,
+    sheet_moves,
+)
 from murkscan.optics import light_across
 from murkscan.types.laser import Laser
 from murkscan.types.plane import Plane
 from murkscan.types.sphere import Sphere
+
+from ..balls import AWAY, RADIUS, put_back, scan_ball, see_ball
 
 TURNS = np.radians([-70.0, -50.0, 0.0, 25.0, 40.0, 70.0])
 """From the line of sight to the normals on a ball, away from the laser where positive."""
@@ -37,54 +45,6 @@ def test_a_plane_is_read_from_any_side():
     assert is_readable(Plane(np.array([0.0, 1.0, 0.0]), 0.0), points, seen).all()
 
 
-RADIUS, AWAY, LEAN = 0.05, 0.9, np.radians(20)
-
-
-def see_ball(aside, above, *, blur=0.0, thickness=1e-5):
-    """Draw the stripe on a ball by its light, find its centres, and cut their rays with the sheet.
-
-    The sheet leans by 20 degrees and lies above the ball's middle; through the sheet, light is
-    summed over its thickness, and along u by a Gaussian. Gives the ball, the points and their
-    sight; `blur` is 1σ of u, `thickness` that of the sheet [m].
-    """
-    u = np.linspace(aside / AWAY - 0.06, aside / AWAY + 0.06, 6001)
-    rise, centre = np.tan(LEAN), np.array([aside, 0.0, AWAY])
-    start = -above - rise * (AWAY - RADIUS)
-    offsets = np.linspace(-4, 4, 41) * thickness
-    places, lights = [], []
-    for off in offsets:
-        # X = (u z, start + off / cos + rise z, z) lies on the ball: a quadratic in z.
-        y = start + off / np.cos(LEAN)
-        a = u**2 + rise**2 + 1
-        b = -u * aside + rise * y - AWAY
-        z = (-b - np.sqrt(np.maximum(b**2 - a * (aside**2 + y**2 + AWAY**2 - RADIUS**2), 0))) / a
-        point = np.stack([u * z, y + rise * z, z], axis=1)
-        # The fan comes from beside the camera, as far away.
-        facing = -np.einsum("ij,ij->i", point - centre, np.stack([u, 0 * u + rise, 0 * u + 1], 1))
-        lights.append(np.maximum(facing, 0) / z * np.exp(-3.0 * z))
-        places.append(point[:, 1] / z)
-    v, light = np.array(places), np.array(lights)
-    light *= np.exp(-0.5 * (offsets / thickness) ** 2)[:, None]
-    light *= np.abs(np.gradient(v, offsets, axis=0))
-    seen = [(light * v).sum(axis=0), light.sum(axis=0)]
-    if blur:
-        seen = [gaussian_filter1d(one, blur / (u[1] - u[0])) for one in seen]
-    # Beyond the ball there is no light, and no centre.
-    z = start / (seen[0] / np.maximum(seen[1], 1e-300) - rise)
-    points = np.stack([u * z, start + rise * z, z], axis=1)
-    ranges = np.linalg.norm(points, axis=1)
-    ways = np.ones((len(u), 1))
-    sight = Sight(
-        points / ranges[:, None],
-        ways * [1.0, 0.0, 0.0],
-        ways * [0.0, np.sin(LEAN), np.cos(LEAN)],
-        ranges,
-    )
-    # Those before the very rim, beyond which there is no ball.
-    good = is_readable(Sphere(centre, RADIUS), points, sight) & (np.abs(u * AWAY - aside) < 0.043)
-    return Sphere(centre, RADIUS), points[good], sight[good]
-
-
 @pytest.mark.parametrize("above", [-0.02, 0.0, 0.02])
 @pytest.mark.parametrize("aside", [-0.25, 0.0, 0.25])
 def test_the_blur_moves_a_ball_s_stripe_as_the_formula_says_in_and_beside_the_middle(aside, above):
@@ -109,3 +69,33 @@ def test_the_sheet_s_thickness_moves_a_ball_s_stripe_as_the_formula_says(above):
     told = told * 4e-4**2 / 6e-8
     # A tenth of the largest.
     np.testing.assert_allclose(shift, told, atol=6e-7)
+
+
+@pytest.mark.parametrize("loss", [0.0, 6.0])
+def test_light_that_the_water_takes_moves_a_ball_s_stripe_by_what_is_stated_at_one_sigma(loss):
+    blur = 1.5e-3 / AWAY
+    ball, points, sight = see_ball(0.0, 0.0, blur=blur)
+    _, other, _ = see_ball(0.0, 0.0, blur=blur, loss=loss)
+    u, same = (np.round(p[:, 0] / p[:, 2], 9) for p in (points, other))
+    _, here, there = np.intersect1d(u, same, return_indices=True)
+    change = ball.distance_to(other)[there] - ball.distance_to(points)[here]
+    variance = float(np.mean((blur * points[:, 2]) ** 2))
+    told = loss_moves(ball, points, sight, variance)[here]
+    # It is largest at the flanks, where the next order is a tenth of it; less light there moves
+    # the stripe the other way.
+    np.testing.assert_allclose(change, np.sign(loss - 3) * -told, atol=1e-6, rtol=0.1)
+
+
+def test_what_a_finder_has_put_back_changes_no_fit():
+    ball, points, sight = scan_ball(blur=1.5e-3 / AWAY)
+    plain = fit_sphere(points, sight=sight)
+    # As far as a finder moves a stripe, outwards on both flanks: 0.04 mm where it leans most.
+    moved, told = put_back(points, sight, 4e-5 * (points[:, 0] / 0.04) ** 2)
+    found = fit_sphere(moved, sight=told)
+    assert found.shape.radius == pytest.approx(plain.shape.radius, abs=3e-7)
+    assert found.shape.centre == pytest.approx(plain.shape.centre, abs=3e-7)
+    assert found.blur == pytest.approx(plain.blur, rel=0.02)
+    # The blur of 1.5 mm, and the ball, by the formula's next order but one.
+    assert plain.blur == pytest.approx(2.25e-6, rel=0.2)
+    assert plain.shape.radius == pytest.approx(RADIUS, abs=3e-6)
+    assert plain.shape.centre == pytest.approx(ball.centre, abs=1e-5)

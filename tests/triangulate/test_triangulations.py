@@ -1,6 +1,7 @@
 """What every triangulation promises, and what the paper's equation (4) gives."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -114,6 +115,19 @@ def test_sigma_is_what_scattered_centres_show():
     pixels = centre + np.stack([shifts, np.zeros_like(shifts)], axis=1)
     ranges = np.linalg.norm(RaySheet().locate(pixels, rig, 0), axis=1)
     assert stated == pytest.approx(ranges.std(), rel=0.015)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("axis", ["x", "y"])
+def test_what_a_finder_has_put_back_is_told_with_its_sign(axis, side):
+    rig, centres = _rig(axis, side), np.array([[300.0, 250.0], [380.0, 240.0]])
+    way, found = np.eye(2)["xy".index(axis)], _stripe(centres)
+    shift = np.array([0.2, -0.1], np.float32)
+    profile = triangulate(replace(found, blur_shift=shift), rig, RaySheet())
+    before = triangulate(replace(found, pixels=centres + shift[:, None] * way), rig, RaySheet())
+    away = (np.linalg.norm(one.points, axis=1) for one in (before, profile))
+    # To first order in a shift of 0.2 px.
+    np.testing.assert_allclose(profile.blur_shift, np.subtract(*away), rtol=2e-3)
 
 
 def test_equation_4_refuses_a_sheet_that_is_turned():

@@ -43,6 +43,7 @@ def merge_profiles(profile: Profile, trajectory: Trajectory, *, axes: Sequence[A
         scan_line=np.rint(across_stripe).astype(np.int32),
         laser=profile.laser,
         branch=profile.branch,
+        blur_shift=profile.blur_shift,
     )
     cameras = trajectory.transform(np.zeros_like(profile.points), profile.time)
     return replace(cloud, normals=estimate_normals(ScanGrid.from_cloud(cloud), cameras))

@@ -23,6 +23,7 @@ _SUMS = np.dtype(
         ("posterior", "f8"),
         ("sigma_common", "f8"),
         ("reflectance", "f8"),
+        ("blur_shift", "f8"),
         ("best", "f8"),
         ("frame", "i4"),
         ("scan_line", "i4"),
@@ -31,7 +32,7 @@ _SUMS = np.dtype(
     ]
 )
 """What is kept of a voxel: sums times weight, 1/σ², and which point was known best."""
-_MEANS = ("signal", "posterior", "sigma_common", "reflectance")
+_MEANS = ("signal", "posterior", "sigma_common", "reflectance", "blur_shift")
 """What is averaged."""
 _NUMBERS = ("frame", "scan_line", "laser", "branch")
 """What tells which point was known best."""

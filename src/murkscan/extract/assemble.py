@@ -25,6 +25,7 @@ def assemble_stripe(
     sigma: Scalars,
     signal: Scalars,
     posterior: Scalars | None = None,
+    blur_shift: Scalars | None = None,
     shadow: float = 0.0,
 ) -> Stripe:
     """Order centres by scan line, number their branches, and give them in full-frame pixels.
@@ -38,6 +39,7 @@ def assemble_stripe(
         sigma: Standard deviation of each centre [px of the image].
         signal: Height of the stripe above its surroundings [grey levels].
         posterior: Probability of each centre; 1 unless given.
+        blur_shift: How far each was put back for the lens's blur [px of the image]; 0 unless given.
         shadow: Distance from a brighter centre up to which a much fainter one is its halo or its
             speckle, and is left out [px of the image].
     """
@@ -62,6 +64,9 @@ def assemble_stripe(
         else posterior[order].astype(np.float32),
         laser=np.full(n, laser, np.uint8),
         branch=branch.astype(np.uint8),
+        blur_shift=np.zeros(n, np.float32)
+        if blur_shift is None
+        else (blur_shift[order] * stretch).astype(np.float32),
     )
 
 

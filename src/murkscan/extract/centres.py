@@ -54,6 +54,8 @@ class Centres:
     """Scan lines over which `sigma` is alike, so that it counts once in so many."""
     rough: Scalars
     """Roughness of the surface from scan line to scan line [full-frame px]."""
+    blur_shift: Scalars
+    """How far the lens's blur had drawn it before it was put back [full-frame px]."""
 
     def __len__(self) -> int:
         """Count the centres."""
@@ -179,9 +181,12 @@ def _measure_white(
 
 
 def _scatter_of(count: int, stretch: int, shape: StripeShape | None) -> tuple[Scalars, ...]:
-    """List what centres err by alike, over how many scan lines, and how rough their surface is."""
+    """List what centres err by alike, over how many scan lines, how rough their surface is.
+
+    And last, how far they have been put back for the blur: not yet.
+    """
     length, rough = (1.0, _ROUGH) if shape is None else (shape.length, stretch * shape.rough)
-    return tuple(np.full(count, each) for each in (0.0, length, min(rough, _ROUGH)))
+    return tuple(np.full(count, each) for each in (0.0, length, min(rough, _ROUGH), 0.0))
 
 
 def _fit_one_width(
@@ -233,6 +238,7 @@ def _without_blur(centres: Centres, *, width: float, blur: float) -> Centres:
         sigma=np.hypot(centres.sigma, noise),
         posterior=np.where(is_blur, _BLUR, 1.0) * centres.posterior,
         common=unknown,
+        blur_shift=added,
     )
 
 

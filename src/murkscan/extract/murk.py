@@ -295,4 +295,5 @@ def _as_stripe(centres: Centres, laser: int) -> Stripe:
         sigma=centres.sigma / stretch,
         signal=centres.signal,
         posterior=centres.posterior,
+        blur_shift=centres.blur_shift / stretch,
     )

@@ -9,7 +9,7 @@ from jaxtyping import Float
 from ..errors import Degenerate, InputError, NotConverged, NotEnoughData
 from ..types.arrays import Mask, Points, Scalars, Vector
 from .shape import AnyShape, Slopes
-from .stripe_blur import Sight, blur_moves, is_readable, sheet_moves
+from .stripe_blur import Sight, blur_moves, is_readable, moves_put_back, sheet_moves
 
 _GAUSSIAN = 1.4826
 """Standard deviation of Gaussian noise as a multiple of its median absolute value."""
@@ -133,7 +133,7 @@ def _linearise(
     if not np.any(by_blur):
         return residuals, slopes, readable
     slopes = np.concatenate([slopes, -by_blur[:, None]], axis=1)
-    moved = moved + sheet_moves(shape, points, sight)
+    moved = moved + sheet_moves(shape, points, sight) + moves_put_back(shape, points, sight)
     return residuals - moved, slopes, readable
 
 

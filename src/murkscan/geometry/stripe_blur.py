@@ -57,11 +57,20 @@ class Sight:
     nobody knows."""
     ranges: Scalars | None = None
     """Distance of each point from the camera [m]; None where nobody knows."""
+    blur_shift: Scalars | None = None
+    """How much farther along its ray the blur had moved each point before the finder put it back
+    [m]; None where no finder puts anything back."""
 
     def __getitem__(self, which: Mask) -> "Sight":
         """Pick some of the points."""
-        light, ranges = (None if one is None else one[which] for one in (self.light, self.ranges))
-        return Sight(self.rays[which], self.along[which], light, ranges)
+        return Sight(
+            self.rays[which],
+            self.along[which],
+            *(
+                None if column is None else column[which]
+                for column in (self.light, self.ranges, self.blur_shift)
+            ),
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,6 +165,20 @@ def sheet_moves(shape: AnyShape, points: Points, sight: Sight) -> Scalars:
     if sight.light is None or not np.any(shape.curvature(sight.along)):
         return np.zeros(len(points))
     return _THICKNESS * _thickness_slopes(stripe)
+
+
+def moves_put_back(shape: AnyShape, points: Points, sight: Sight) -> Scalars:
+    """Give by how much the finder has changed each point's distance for the blur, as read [m].
+
+    The arguments are those of `sheet_moves`.
+    """
+    if sight.blur_shift is None:
+        return np.zeros(len(points))
+    stripe = _Stripe.of(shape, points, sight)
+    # A centre that moves along its scan line moves its point along the sheet.
+    sheetwards = sight.blur_shift / _dot(sight.rays, stripe.sheet)
+    moved: Scalars = -_dot(stripe.normals, stripe.sheet) * sheetwards
+    return moved
 
 
 def loss_moves(shape: AnyShape, points: Points, sight: Sight, blur: float) -> Scalars:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -34,7 +35,8 @@ def save_stripe(path: Path, stripe: Stripe) -> None:
     u, v = stripe.pixels.T
     columns = {"frame": stripe.frame, "time_s": stripe.time, "u": u, "v": v}
     columns |= {"sigma": stripe.sigma, "signal": stripe.signal, "posterior": stripe.posterior}
-    save_columns(path, columns | {"laser": stripe.laser, "branch": stripe.branch})
+    columns |= {"laser": stripe.laser, "branch": stripe.branch, "blur_shift": stripe.blur_shift}
+    save_columns(path, columns)
 
 
 def load_stripe(path: Path) -> Stripe:
@@ -53,6 +55,7 @@ def load_stripe(path: Path) -> Stripe:
         posterior=columns["posterior"],
         laser=columns["laser"],
         branch=columns["branch"],
+        blur_shift=columns.of_late("blur_shift"),
     )
 
 
@@ -66,7 +69,7 @@ def save_profile(path: Path, profile: Profile) -> None:
     columns = {"frame": profile.frame, "time_s": profile.time, "laser": profile.laser}
     columns |= {"u": u, "v": v, "x_m": x, "y_m": y, "z_m": z, "sigma_m": profile.sigma}
     columns |= {"signal": profile.signal, "posterior": profile.posterior}
-    save_columns(path, columns | {"branch": profile.branch})
+    save_columns(path, columns | {"branch": profile.branch, "blur_shift_m": profile.blur_shift})
 
 
 def load_profile(path: Path) -> Profile:
@@ -86,6 +89,7 @@ def load_profile(path: Path) -> Profile:
         signal=columns["signal"],
         posterior=columns["posterior"],
         branch=columns["branch"],
+        blur_shift=columns.of_late("blur_shift_m"),
     )
 
 
@@ -131,7 +135,8 @@ def save_cloud_part(path: Path, part: CloudPart) -> None:
     rows = as_rows(part.cloud)
     columns = {_SHOWN_AS.get(name, name): rows[name] for name in _ORDER}
     causes = np.array(["", *part.causes])
-    save_columns(path, columns | {"taken_out": causes[part.taken_out]})
+    columns |= {"blur_shift_m": part.cloud.blur_shift, "taken_out": causes[part.taken_out]}
+    save_columns(path, columns)
 
 
 def load_cloud_part(path: Path) -> CloudPart:
@@ -146,6 +151,7 @@ def load_cloud_part(path: Path) -> CloudPart:
     taken_out = numbers + (0 if "" in words else 1)
     there = [name for name in _ORDER if name not in ADDED or name in columns]
     cloud = from_columns({name: columns[_SHOWN_AS.get(name, name)] for name in there})
+    cloud = replace(cloud, blur_shift=columns.of_late("blur_shift_m"))
     return CloudPart(cloud, taken_out.astype(np.uint8), causes)
 
 
@@ -275,3 +281,7 @@ class Columns:
         if name not in self._columns:
             raise FormatError(f"{self._path} has no column {name}; delete it and run again.")
         return self._columns[name]
+
+    def of_late(self, name: str) -> np.ndarray:
+        """Give a column that tables of earlier versions lack; empty where it is missing."""
+        return self._columns.get(name, np.zeros(0, np.float32))

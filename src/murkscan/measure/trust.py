@@ -71,32 +71,35 @@ def trust_fit(fit: ShapeFit[AnyShape], sample: Sample) -> FitUncertainty:
     independent = covariance_of_fit(
         fit.slopes[inside], fit.residuals[inside], sample.profile[inside], sample.line[inside]
     )
-    matrix = independent.matrix + _blur_part(fit) + _open_part(fit, sample)
+    by_light = moves_of_light(fit, sample)
+    matrix = independent.matrix + by_light @ by_light.T
     return FitUncertainty(matrix, independent.degrees, _common_moves(fit, sample))
 
 
-def _blur_part(fit: ShapeFit[AnyShape]) -> Float[np.ndarray, "p p"]:
-    """Give the covariance that follows from how well the blur's formula holds."""
-    slopes = fit.slopes[fit.inliers]
-    count = slopes.shape[1]
-    if fit.blur == 0:
-        return np.zeros((count, count))
-    own, by_blur = slopes[:, :-1], slopes[:, -1]
-    scale = np.maximum(np.linalg.norm(own, axis=0), 1e-300)
-    moves = np.append(np.linalg.lstsq(own / scale, -by_blur, rcond=None)[0] / scale, 0.0)
-    return (_BLUR_MODEL * fit.blur) ** 2 * np.outer(moves, moves)
+def moves_of_light(fit: ShapeFit[AnyShape], sample: Sample) -> Float[np.ndarray, "p 3"]:
+    """Give how a fit's parameters move with what nobody knows of light and lens, at 1σ each.
 
+    The columns are: what the blur's formula leaves open, what the water takes of the light, and the
+    sheet's thickness. None of it moves anything where it is not known from where points were seen.
 
-def _open_part(fit: ShapeFit[AnyShape], sample: Sample) -> Float[np.ndarray, "p p"]:
-    """Give the covariance that follows from what nobody knows of light and sheet."""
-    count = fit.slopes.shape[1]
+    Args:
+        fit: The fit to the sample's points.
+        sample: The points that were fitted.
+    """
+    inside, parameters = fit.inliers, fit.slopes.shape[1]
+    moves = np.zeros((parameters, 3))
     if sample.sight is None:
-        return np.zeros((count, count))
-    inside = fit.inliers
+        return moves
+    own = len(fit.shape.slopes(sample.cloud.points[:1])[0])
     seen = fit.shape, sample.cloud.points[inside], sample.sight[inside]
+    if parameters > own:
+        # Of a lens that blurs in another way, the blur that is fitted takes up what it can: it is
+        # held here, so that all of its effect counts.
+        by_blur = _BLUR_MODEL * fit.blur * fit.slopes[inside, own:]
+        moves[:own, :1] = _follow(fit.slopes[inside, :own], -by_blur)
     off = np.stack([loss_moves(*seen, fit.blur), sheet_moves(*seen)], axis=1)
-    moves = _follow(fit.slopes[inside], off)
-    return moves @ moves.T
+    moves[:, 1:] = _follow(fit.slopes[inside], off)
+    return moves
 
 
 def _follow(slopes: Slopes, off: Float[np.ndarray, "n modes"]) -> Float[np.ndarray, "p modes"]:

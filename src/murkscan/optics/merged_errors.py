@@ -133,11 +133,10 @@ class MergedErrors:
             if one is None:
                 return None
             some = cloud[mine]
-            times = some.frame.astype(float)
-            seen = look_back(some.points, some.laser, times, one.trajectory, one.rig)
+            seen = look_back(some, some.frame.astype(float), one.trajectory, one.rig)
             columns[:, mine], ranges[mine] = (seen.rays, seen.along, seen.light), seen.ranges
         rays, along, light = columns
-        return Sight(rays, along, light, ranges)
+        return Sight(rays, along, light, ranges, cloud.blur_shift.astype(float))
 
     def is_facing(self, owner: Indices, cloud: PointCloud) -> Mask:
         """Tell which points turn neither from their camera nor from their light; see `is_facing`.

@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from ..geometry.stripe_blur import Sight
 from ..types.arrays import Pixels, Points, Ratios, Scalars, SmallNumbers
+from ..types.cloud import PointCloud
 from ..types.profile import Profile
 from ..types.rig import Rig
 from ..types.trajectory import Trajectory
@@ -21,34 +22,31 @@ _PART = 20_000
 """Points that one thread works on: some ten megabytes."""
 
 
-def look_back(
-    points: Points, laser: SmallNumbers, times: Scalars, trajectory: Trajectory, rig: Rig
-) -> Sight:
-    """Find from where each point was seen, and where its light came from.
+def look_back(cloud: PointCloud, times: Scalars, trajectory: Trajectory, rig: Rig) -> Sight:
+    """Find from where each point was seen, where its light came from, and what the finder put back.
 
     Args:
-        points: Points in the world [m].
-        laser: Number of the laser that lit each.
+        cloud: Points in the world.
         times: When each was seen [s].
         trajectory: world_from_camera.
         rig: The rig.
     """
-    cameras = trajectory.transform(np.zeros_like(points), times)
-    rays = points - cameras
+    cameras = trajectory.transform(np.zeros_like(cloud.points), times)
+    rays = cloud.points - cameras
     ranges = np.linalg.norm(rays, axis=1)
     rays /= np.maximum(ranges, 1e-12)[:, None]
     index = refractive_index(rig.water, rig.wavelength)
-    stripes, lights = np.zeros_like(points), np.zeros_like(points)
-    for number in np.unique(laser).tolist():
-        mine = laser == number
+    stripes, lights = np.zeros_like(cloud.points), np.zeros_like(cloud.points)
+    for number in np.unique(cloud.laser).tolist():
+        mine = cloud.laser == number
         stripes[mine] = (0.0, 1.0, 0.0) if rig.lasers[number].axis == "x" else (1.0, 0.0, 0.0)
         lights[mine] = light_across(rig.lasers[number], index)
     along, light = (trajectory.transform(way, times) - cameras for way in (stripes, lights))
-    return Sight(rays, along, light, ranges)
+    return Sight(rays, along, light, ranges, cloud.blur_shift.astype(float))
 
 
 def find_pixels(points: Points, times: Scalars, trajectory: Trajectory, rig: Rig) -> Pixels:
-    """Find the pixel at which each point was seen; the arguments are those of `look_back`."""
+    """Find the pixel at which each point of the world was seen; see `look_back`."""
     index = refractive_index(rig.water, rig.wavelength)
     return project(rig.camera, trajectory.to_camera(points, times), index)
 

@@ -33,10 +33,10 @@ class Kind(Generic[R]):
     raises this number: folders of earlier versions are then made anew."""
 
 
-EXTRACT = Kind("extract", ExtractResult, meaning=2)
-TRIANGULATE = Kind("triangulate", TriangulateResult, meaning=2)
+EXTRACT = Kind("extract", ExtractResult, meaning=3)
+TRIANGULATE = Kind("triangulate", TriangulateResult, meaning=3)
 MOTION = Kind("motion", MotionResult, meaning=4)
-CLOUD = Kind("cloud", CloudResult, meaning=3)
+CLOUD = Kind("cloud", CloudResult, meaning=4)
 MESH = Kind("mesh", MeshResult, meaning=3)
 VIEW = Kind("view", ViewResult, meaning=2)
 REPORT = Kind("report", ReportResult, meaning=2)

@@ -51,7 +51,7 @@ def _know_scan(project: Project, cloud: PointCloud) -> Sample:
 
     return Sample.from_cloud(
         cloud,
-        sight=look_back(cloud.points, cloud.laser, profile.time, trajectory, rig),
+        sight=look_back(cloud, profile.time, trajectory, rig),
         shifts=shifts if rig.covariance.names or trajectory.errors is not None else None,
     )
 

@@ -57,10 +57,11 @@ def triangulate(stripe: Stripe, rig: Rig, method: AbstractTriangulation) -> Prof
         laser=stripe.laser[seen],
         pixels=stripe.pixels[seen],
         points=points[seen],
-        sigma=(slope[seen] * stripe.sigma[seen]).astype(np.float32),
+        sigma=(np.abs(slope[seen]) * stripe.sigma[seen]).astype(np.float32),
         signal=stripe.signal[seen],
         posterior=stripe.posterior[seen],
         branch=stripe.branch[seen],
+        blur_shift=(slope[seen] * stripe.blur_shift[seen]).astype(np.float32),
     )
 
 
@@ -68,6 +69,7 @@ def _range_slope(
     pixels: Pixels, points: Points, rig: Rig, laser: int, method: AbstractTriangulation
 ) -> Scalars:
     """Change of a point's range with its centre's shift along the scan line [m/px]."""
+    step = np.full(len(pixels), _STEP)
     shift = _STEP * (np.arange(2) == "xy".index(rig.lasers[laser].axis))
     ranges = np.linalg.norm(points, axis=1)
     shifted = np.linalg.norm(method.locate(pixels + shift, rig, laser), axis=1)
@@ -75,4 +77,5 @@ def _range_slope(
     missed = np.isnan(shifted) & np.isfinite(ranges)
     if missed.any():
         shifted[missed] = np.linalg.norm(method.locate(pixels[missed] - shift, rig, laser), axis=1)
-    return np.abs(shifted - ranges) / _STEP
+        step[missed] = -_STEP
+    return (shifted - ranges) / step

@@ -51,6 +51,11 @@ class PointCloud(Table):
     )
     """Brightness of the stripe as it would be on the same paint a metre from the laser, facing it,
     without water between, in proportion to the paint's albedo [grey levels]; 0 where not known."""
+    blur_shift: Ratios = field(
+        default_factory=lambda: np.zeros(0, np.float32), metadata={"may_be_left_out": True}
+    )
+    """How much farther along its ray the lens's blur had moved each point before the finder put it
+    back [m]; 0 where the finder puts nothing back. Exported clouds do not have it."""
 
     def is_sound(self) -> Mask:
         """Tell which points can be: at a place, with a normal, and with deviations not below 0.
@@ -70,6 +75,7 @@ class PointCloud(Table):
             points=unit * self.points,
             sigma=np.float32(unit) * self.sigma,
             sigma_common=np.float32(unit) * self.sigma_common,
+            blur_shift=np.float32(unit) * self.blur_shift,
         )
 
     def carry(self, target_from_world: Pose) -> "PointCloud":

@@ -1,6 +1,8 @@
 """The laser line in space."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+import numpy as np
 
 from .arrays import FrameNumbers, Pixels, Points, Ratios, Scalars, SmallNumbers
 from .table import Table
@@ -28,3 +30,8 @@ class Profile(Table):
     """Probability that this is the surface."""
     branch: SmallNumbers
     """Number of each point among those of its scan line, from 0, the strongest first."""
+    blur_shift: Ratios = field(
+        default_factory=lambda: np.zeros(0, np.float32), metadata={"may_be_left_out": True}
+    )
+    """How much farther away the blur of the lens had moved each point before the finder put it back
+    [m]; 0 where the finder puts nothing back."""

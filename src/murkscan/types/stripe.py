@@ -1,6 +1,8 @@
 """The laser line as seen in the picture."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+import numpy as np
 
 from .arrays import FrameNumbers, Pixels, Ratios, Scalars, SmallNumbers
 from .table import Table
@@ -29,3 +31,8 @@ class Stripe(Table):
     """Number of the laser in the rig."""
     branch: SmallNumbers
     """Number of this centre among those of its scan line, from 0, the strongest first."""
+    blur_shift: Ratios = field(
+        default_factory=lambda: np.zeros(0, np.float32), metadata={"may_be_left_out": True}
+    )
+    """How far the blur of the lens had drawn the centre along its scan line before the finder put
+    it back [px]; 0 where the finder puts nothing back."""
