@@ -5,9 +5,14 @@ from numba import njit
 
 _SIDE = 5
 """Pixels on one side of a peak that give the background there."""
-_NARROWEST = 3.5
-"""Half the narrowest window [px]: a stripe that is half a pixel wide (1σ) is weighed alike wherever
-in its pixel it lies, to 0.004 px."""
+_NARROWEST = 2.5
+"""Width that the narrowest stripe is taken to have at its foot [px]: one that is half a pixel wide
+(1σ) is weighed alike wherever in its pixel it lies, to 0.012 px."""
+_REACH = 1.9
+"""Reach of the window to either side, in widths of the stripe at its foot."""
+_BLIND = 13.0 / 3.0
+"""What makes a window of this form, (1 - x²)⁴ x (1 - 13/3 x²), blind to light with an even slope:
+its integral times x is 0."""
 _TURNS = 4
 """Times that the window is laid anew on its own centre, which halves what is left ten times."""
 
@@ -45,9 +50,12 @@ def weigh_peaks(
     """Centre of mass of what each peak shows above its foot.
 
     The background is the line through the levels on both sides of the peak; the foot lies
-    above it by a share of the peak's height. Each pixel is weighed by a window without edges, which
-    is as wide to either side as the stripe is at its foot, and lies on the centre that it gives: a
-    window with edges pulls the centre by up to 0.2 px to where in its pixel an edge lies.
+    above it by a share of the peak's height. Each pixel is weighed by a window without edges, whose
+    reach follows from the stripe's width at its foot, and which lies on the centre that it gives: a
+    window with edges pulls the centre by up to 0.2 px to where in its pixel an edge lies. It is
+    blind to light with an even slope: what the water scatters forward lies under the stripe as a
+    skirt of many pixels, is other scan lines' light as well, and lies beside the stripe where the
+    surface bends.
 
     Scan lines are image columns if `down`, otherwise image rows. Gives centre, its standard
     deviation, height over background, one peak a row (n 3); NaN where it is less than `least` high.
@@ -74,11 +82,11 @@ def weigh_peaks(
                 width += 1.0 if beyond > 0 else weight / (weight - beyond)
                 reached, weight = reached + 1, beyond
         if height >= least:
-            reach = min(max(width, _NARROWEST), half_width + 0.5)
+            reach = _REACH * min(max(width, _NARROWEST), half_width + 0.5)
             shift, spread = _weigh(
                 scan, peak, base, slope, reach, 2 / _SIDE / (before + after) ** 2
             )
-            if abs(shift) <= 0.5 * reach and spread > 0:
+            if abs(shift) <= 0.4 * reach and spread > 0:
                 found[i, 0] = peak + shift
                 found[i, 1] = noise * spread
                 found[i, 2] = height
@@ -91,8 +99,9 @@ def _weigh(
 ) -> tuple[float, float]:
     """Give the centre in a window that lies on it, from the peak, and its deviation over noise.
 
-    The window is (1 - d² / reach²)² at a distance d, zero beyond its reach; `tilt` is the variance
-    of the background's slope over that of a pixel. Deviation 0: there is no centre.
+    The window is that of `_BLIND`, where x is the distance over the reach, beyond which it is zero;
+    `tilt` is the variance of the background's slope over that of a pixel. Deviation 0: there is no
+    centre.
     """
     shift, deviation = 0.0, 0.0
     for _ in range(_TURNS):
@@ -101,11 +110,13 @@ def _weigh(
         moment, growth, spread, lever = 0.0, 0.0, 0.0, 0.0
         for v in range(low, high + 1):
             away = v - peak - shift
-            part = 1.0 - (away / reach) ** 2
+            square = (away / reach) ** 2
+            part, blind = 1.0 - square, 1.0 - _BLIND * square
             level = scan[v] - base - slope * (v - peak)
-            weight = part * part * away
+            weight = part**4 * blind * away
             moment += weight * level
-            growth += (part * part - 4.0 * part * (away / reach) ** 2) * level
+            turn = part * blind - 8.0 * square * blind - 2.0 * _BLIND * square * part
+            growth += part**3 * turn * level
             spread += weight * weight
             lever += weight * away
         if growth <= 0.0:

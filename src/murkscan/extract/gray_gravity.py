@@ -23,8 +23,9 @@ from .candidates import Candidates
 class GrayGravity(AbstractExtractor):
     """Centre of mass of the grey levels around each peak, background taken off.
 
-    They are weighed in a window without edges, as wide to either side as the stripe is at its foot,
-    which lies on the centre that it gives.
+    They are weighed in a window without edges, whose reach follows from the stripe's width at its
+    foot. It lies on the centre that it gives, and is blind to light with an even slope, such as
+    glow and what the water scatters forward.
 
     References:
         Naidu and Fisher, A comparative analysis of algorithms for determining the peak position of
@@ -32,7 +33,7 @@ class GrayGravity(AbstractExtractor):
     """
 
     half_width: float = 12.0
-    """Half the widest window [px]: more than half the stripe at its foot."""
+    """Width of the widest stripe at its foot [px]; beyond it on both sides lies background."""
     foot: float = 0.25
     """Share of the peak's height at which the stripe's width is taken."""
     min_height: float = 10.0

@@ -35,7 +35,7 @@ def save_stripe(path: Path, stripe: Stripe) -> None:
     u, v = stripe.pixels.T
     columns = {"frame": stripe.frame, "time_s": stripe.time, "u": u, "v": v}
     columns |= {"sigma": stripe.sigma, "signal": stripe.signal, "posterior": stripe.posterior}
-    columns |= {"laser": stripe.laser, "branch": stripe.branch, "blur_shift": stripe.blur_shift}
+    columns |= {"laser": stripe.laser, "branch": stripe.branch, "blur_shift_px": stripe.blur_shift}
     save_columns(path, columns)
 
 
@@ -55,7 +55,7 @@ def load_stripe(path: Path) -> Stripe:
         posterior=columns["posterior"],
         laser=columns["laser"],
         branch=columns["branch"],
-        blur_shift=columns.of_late("blur_shift"),
+        blur_shift=columns.of_late("blur_shift_px"),
     )
 
 
