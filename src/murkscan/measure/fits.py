@@ -18,6 +18,7 @@ from ..types.quantity import Quantity
 from ..types.sphere import Sphere
 from .remarks import remark_on_fit
 from .sample import Sample
+from .settle import fit_settled
 from .trust import FitUncertainty, LinearMap, trust_fit
 
 _FEWEST_PROFILES = 3
@@ -88,8 +89,8 @@ def trust_sphere(sample: Sample) -> tuple[ShapeFit[Sphere], FitUncertainty]:
         NotConverged: No sphere settles.
     """
     _require_profiles(sample, "sphere")
-    fit = fit_sphere(sample.cloud.points, sight=sample.sight)
-    return fit, trust_fit(fit, sample)
+    fit, settled = fit_settled(lambda s: fit_sphere(s.cloud.points, sight=s.sight), sample)
+    return fit, trust_fit(fit, settled)
 
 
 def measure_cylinder(sample: Sample) -> Measurement:
@@ -105,7 +106,9 @@ def measure_cylinder(sample: Sample) -> Measurement:
     """
     _require_profiles(sample, "cylinder")
     normals = sample.cloud.normals.astype(float)
-    fit = fit_cylinder(sample.cloud.points, normals, sight=sample.sight)
+    fit, settled = fit_settled(
+        lambda s: fit_cylinder(s.cloud.points, normals, sight=s.sight), sample
+    )
     cylinder, sides = fit.shape, span_plane(fit.shape.axis)
     values = {"radius": cylinder.radius, "diameter": 2 * cylinder.radius}
     values |= dict(zip(("x", "y", "z"), cylinder.point.tolist(), strict=True))
@@ -118,7 +121,7 @@ def measure_cylinder(sample: Sample) -> Measurement:
     how[2:5] -= np.outer(cylinder.axis / cylinder.axis[most], how[2 + most])
     how[2 + most] = 0.0
     units = ("m",) * 5 + ("",) * 3
-    trust, places = trust_fit(fit, sample), {"on the axis": cylinder.point}
+    trust, places = trust_fit(fit, settled), {"on the axis": cylinder.point}
     return _tell("cylinder", fit, trust, sample, values, units, how, places)
 
 

@@ -37,6 +37,8 @@ class Sample:
     shifts: Callable[[Indices], Shifts] | None = None
     """Gives, in the world, how far some of the points move with the rig's errors; None where the
     rig states none."""
+    num_alignments: int = 0
+    """How many of these errors, the last ones, are those of a merged cloud's alignments."""
 
     @classmethod
     def from_cloud(
@@ -45,6 +47,7 @@ class Sample:
         *,
         sight: Sight | None = None,
         shifts: Callable[[Indices], Shifts] | None = None,
+        num_alignments: int = 0,
     ) -> "Sample":
         """Take all points of a cloud.
 
@@ -55,6 +58,7 @@ class Sample:
             cloud: The points.
             sight: From where each was seen.
             shifts: Gives how far points move with the rig's errors [m].
+            num_alignments: How many of these, the last ones, are of alignments of passes.
 
         Raises:
             InputError: A point is not finite.
@@ -67,10 +71,11 @@ class Sample:
             )
         grid = ScanGrid.from_cloud(cloud)
         if grid.is_numbered:
-            return cls(cloud, grid.profile, grid.line, np.arange(len(cloud)), sight, shifts)
-        cloud = complete_normals(cloud, ~grid.numbered)
-        places = _number_some(cloud, grid.numbered)
-        return cls(cloud, *places, np.arange(len(cloud)), sight, shifts)
+            numbers = grid.profile, grid.line
+        else:
+            cloud = complete_normals(cloud, ~grid.numbered)
+            numbers = _number_some(cloud, grid.numbered)
+        return cls(cloud, *numbers, np.arange(len(cloud)), sight, shifts, num_alignments)
 
     def __len__(self) -> int:
         """Count the points."""

@@ -78,7 +78,7 @@ class MergedErrors:
         pass's poses, or of all together, and six numbers of each pass's alignment.
         """
         rigs = [error_modes(covariance) for covariance in self._covariances.values()]
-        return block_diag(*rigs, np.eye(self._num_pose_errors + 6 * len(self.passes)))
+        return block_diag(*rigs, np.eye(self._num_pose_errors + self.num_alignments))
 
     def shifts(self, owner: Indices, cloud: PointCloud) -> Shifts:
         """Compute how far points move with each independent error, in the merged world [m].
@@ -112,8 +112,13 @@ class MergedErrors:
         What the others do is known already where the ways were adjusted together.
         """
         only = apart.copy()
-        only[:, :, apart.shape[2] - self._num_pose_errors - 6 * len(self.passes) :] = 0.0
+        only[:, :, apart.shape[2] - self._num_pose_errors - self.num_alignments :] = 0.0
         return only
+
+    @property
+    def num_alignments(self) -> int:
+        """Count the independent errors of the alignments, which are the last ones."""
+        return 6 * len(self.passes)
 
     @property
     def is_stated(self) -> bool:

@@ -68,6 +68,7 @@ def _know_merged(project: Project, cloud: PointCloud) -> Sample:
         cloud,
         sight=errors.look_back(owner, cloud),
         shifts=shifts if errors.is_stated else None,
+        num_alignments=errors.num_alignments,
     )
 
 
