@@ -5,13 +5,13 @@ from numba import njit
 
 _SIDE = 5
 """Pixels on one side of a peak that give the background there."""
-_NARROWEST = 2.5
+_NARROWEST = 2.9
 """Width that the narrowest stripe is taken to have at its foot [px]: one that is half a pixel wide
 (1σ) is weighed alike wherever in its pixel it lies, to 0.012 px."""
 _REACH = 1.9
 """Reach of the window to either side, in widths of the stripe at its foot."""
-_BLIND = 13.0 / 3.0
-"""What makes a window of this form, (1 - x²)⁴ x (1 - 13/3 x²), blind to light with an even slope:
+_BLIND = 11.0 / 3.0
+"""What makes a window of this form, (1 - x²)³ x (1 - 11/3 x²), blind to light with an even slope:
 its integral times x is 0."""
 _TURNS = 4
 """Times that the window is laid anew on its own centre, which halves what is left ten times."""
@@ -113,10 +113,10 @@ def _weigh(
             square = (away / reach) ** 2
             part, blind = 1.0 - square, 1.0 - _BLIND * square
             level = scan[v] - base - slope * (v - peak)
-            weight = part**4 * blind * away
+            weight = part**3 * blind * away
             moment += weight * level
-            turn = part * blind - 8.0 * square * blind - 2.0 * _BLIND * square * part
-            growth += part**3 * turn * level
+            turn = part * blind - 6.0 * square * blind - 2.0 * _BLIND * square * part
+            growth += part**2 * turn * level
             spread += weight * weight
             lever += weight * away
         if growth <= 0.0:
