@@ -122,6 +122,7 @@ def run(name, case, seed):
         "pulls": length_pulls(dive, adjusted),
         "blind": adjusted.blind,
         "seams": asdict(adjusted.seams),
+        "astray": adjusted.astray,
         "seconds": seconds,
         "cpu": cpu,
         "gigabytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20,

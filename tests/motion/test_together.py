@@ -136,6 +136,10 @@ def test_a_corrected_pass_says_how_far_and_how_sure(together):
     words = tell_correction_of_pass(together[1])
     assert words[0].startswith("corrected along its way from what the passes saw")
     assert "length of the way" in words[1]
+    assert not together[1].is_astray
+    lost = tell_correction_of_pass(replace(together[1], astray=3.2))
+    assert lost[:-1] == words
+    assert lost[-1].startswith("over 3.2 s of it, bumps do not lie on those that other passes saw")
 
 
 def test_passes_that_know_only_about_how_fast_they_are_lie_in_the_first_camera_s_world():

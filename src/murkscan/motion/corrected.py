@@ -43,6 +43,13 @@ class Correction:
     """Longest stretch [s] whose relief does not lie on its like in the end."""
     seams: Seams
     """How far passes lie apart where they overlap, of passes that were corrected together."""
+    astray: float
+    """Longest stretch [s] in which its relief is not that of another pass that it lies on."""
+
+    @property
+    def is_astray(self) -> bool:
+        """Whether some of it does not lie where other passes saw the same."""
+        return self.astray > _BLIND
 
     @property
     def is_sound(self) -> bool:
@@ -87,6 +94,7 @@ def correct_motion(
         adjusted.tiles_of(0),
         adjusted.blind,
         adjusted.seams,
+        adjusted.astray[0],
     )
 
 

@@ -33,11 +33,19 @@ def tell_correction(correction: Correction) -> tuple[str, ...]:
 
 def tell_correction_of_pass(correction: Correction) -> tuple[str, ...]:
     """Say the same of a pass that was corrected together with others."""
-    return (
+    lines = [
         f"corrected along its way from what the passes saw of the same places, by "
         f"{_tell_moved(correction)} from where it lay as a rigid body",
         *_tell_known(correction, _CROSSING),
-    )
+    ]
+    if correction.is_astray:
+        lines.append(
+            f"over {correction.astray:.1f} s of it, bumps do not lie on those that other passes "
+            "saw there: its way may be wrong there by more than is stated, or the surface has "
+            "changed; a log that knows it better, a second laser or passes that overlap more "
+            "would tell"
+        )
+    return tuple(lines)
 
 
 _SECOND = (

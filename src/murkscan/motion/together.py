@@ -160,4 +160,5 @@ def _correction_of(
         adjusted.tiles_of(number),
         adjusted.blind,
         adjusted.seams,
+        adjusted.astray[number],
     )

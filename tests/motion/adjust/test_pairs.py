@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from murkscan.motion.adjust import AdjustSettings, Pass
+from murkscan.motion.adjust.checks import compare_passes
 from murkscan.motion.adjust.first_path import first_path, fit_path
 from murkscan.motion.adjust.legs import cut_legs, make_facets
 from murkscan.motion.adjust.pairs import make_side, pair_facets, steady_normals
+from murkscan.motion.adjust.solve import State
 from murkscan.motion.adjust.ties import linearise
 from murkscan.types.navigation import Navigation, NavigationAccuracy
 from murkscan.types.trajectory import Trajectory
@@ -131,3 +133,19 @@ def test_a_plain_surface_shows_no_slopes():
     assert np.sqrt(np.mean(normals[:, :2] ** 2)) < 0.2 * np.sqrt(
         np.mean(facets.normals[:, :2] ** 2)
     )
+
+
+def test_a_stretch_that_lies_beside_its_like_is_counted_in_time():
+    found = [see(number, noise=1e-4) for number in (0, 1)]
+    facets, paths = zip(*map(facets_of, found, (0, 1)), strict=True)
+    legs = [one.leg for one in facets]
+    true = compare_passes(State(paths, np.zeros(0)), legs)
+    assert true.astray == (0.0, 0.0)
+    assert true.apart < 0.1e-3
+    # Half of the second one's way lies 15 mm aside.
+    way = found[1].start
+    late = np.where(way.times > 3, 15e-3, 0.0)
+    torn = fit_path(paths[1], replace(way, positions=way.positions + np.outer(late, [1.0, 1.0, 0])))
+    false = compare_passes(State((paths[0], torn), np.zeros(0)), legs)
+    assert min(false.astray) == pytest.approx(2.8, abs=0.5)
+    assert false.apart > 3 * true.apart

@@ -14,7 +14,7 @@ from jaxtyping import Float
 from ...errors import InputError
 from ...types.arrays import Mask, Scalars
 from ...types.trajectory import Trajectory
-from .checks import Seams, find_blind, measure_seams
+from .checks import Seams, compare_passes, find_blind
 from .first_path import first_path, fit_path
 from .legs import Leg, Pass, cut_legs, make_facets
 from .log_terms import Log
@@ -61,6 +61,9 @@ class Adjusted:
     and the pass has settled wrongly."""
     seams: Seams
     """How far passes lie apart where they overlap, before and after."""
+    astray: tuple[float, ...]
+    """Of each pass the longest stretch [s] in which its relief is not that of another that it lies
+    on."""
 
     def tiles_of(self, number: int) -> int:
         """Count the pieces of a pass's surface that were found again, in it or in another pass."""
@@ -130,7 +133,7 @@ def adjust_passes(
         for number, (one, path) in enumerate(zip(passes, state.paths, strict=True))
         for leg in cut_legs(number, one, path, settings.cell)
     ]
-    apart = measure_seams(state, legs)
+    apart = compare_passes(state, legs).apart
     groups: list[Ties] = []
     known: list[Ties] = []
     for within in (True, False):
@@ -148,11 +151,11 @@ def adjust_passes(
         if len(passes) == 1:
             break
     errors = draw_errors(state, logs, groups, settings, count=_MODES, as_seen=True)
-    blind = find_blind(state, legs, logs, settings)
+    blind, laid = find_blind(state, legs, logs, settings), compare_passes(state, legs)
     scale = 1 / np.sqrt(_MODES)
     return Adjusted(
         state.paths, as_logged, state, logs, tuple(groups), scale * errors, scale * loose,
-        tuple(known), blind, Seams(apart, measure_seams(state, legs)),
+        tuple(known), blind, Seams(apart, laid.apart), laid.astray,
     )  # fmt: skip
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, permutations
 
 import numpy as np
 from jaxtyping import Float
@@ -15,12 +15,17 @@ from .rough import carry_to_vehicles, may_meet, tie_legs
 from .settings import AdjustSettings
 from .solve import State
 from .ties import linearise
-from .tiles import make_relief
+from .tiles import FLATTEST, make_relief
 
 _ROW = 0.3
 """Time up to which tiles lie in one row, beside one another [s]."""
 _SEAM = 20e-3
 """Distance up to which passes are looked for in each other's place [m]."""
+_LIKE = 0.5
+"""Distance of facets, in their legs' relief, below which they lie on their like: two reliefs that
+have nothing in common lie 1.4 apart."""
+_ROW_FACETS = 5
+"""Facets of a row that tell how it lies."""
 
 
 @dataclass(frozen=True)
@@ -33,20 +38,42 @@ class Seams:
     """Where they have been adjusted to."""
 
 
-def measure_seams(state: State, legs: Sequence[Leg]) -> float:
-    """Measure how far facets of different passes lie apart, RMS along their normals [m]."""
+@dataclass(frozen=True)
+class Overlaps:
+    """How passes lie on one another where they overlap."""
+
+    apart: float
+    """RMS of their distances along the surface's normal [m]."""
+    astray: tuple[float, ...]
+    """Of each pass the longest stretch [s] in which its relief is not that of another that it lies
+    on."""
+
+
+def compare_passes(state: State, legs: Sequence[Leg]) -> Overlaps:
+    """Measure how far facets of different passes lie apart, and where bumps do not lie on bumps."""
     sides = [
         make_side(make_facets(leg, path), path)
         for leg in legs
         for path in [state.paths[leg.number]]
     ]
-    off = [
-        measure_apart(sides[i], sides[j], _SEAM)
-        for i, j in combinations(range(len(legs)), 2)
-        if legs[i].number != legs[j].number and may_meet(sides[i].facets, sides[j].facets, _SEAM)
-    ]
-    every = np.concatenate([np.zeros(0), *off])
-    return float(np.sqrt(np.mean(every**2))) if len(every) else 0.0
+    offs, astray = [np.zeros(0)], [0.0] * len(state.paths)
+    for a, b in permutations(sides, 2):
+        one, other = a.facets.leg.number, b.facets.leg.number
+        if one == other or not may_meet(a.facets, b.facets, _SEAM):
+            continue
+        off, row = measure_apart(a, b, _SEAM)
+        offs.append(off)
+        relief = float(np.sqrt((a.relief + b.relief) / 2))
+        if len(off) and relief > FLATTEST:
+            count = np.bincount(row, minlength=1)
+            size = np.sqrt(np.bincount(row, off**2) / np.maximum(count, 1))
+            there = np.flatnonzero(count >= _ROW_FACETS)
+            times = a.facets.leg.row_times[there]
+            good = times[size[there] < _LIKE * relief]
+            astray[one] = max(astray[one], longest_without(times, good))
+    every = np.concatenate(offs)
+    apart = float(np.sqrt(np.mean(every**2))) if len(every) else 0.0
+    return Overlaps(apart, tuple(astray))
 
 
 def find_blind(

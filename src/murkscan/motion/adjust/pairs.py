@@ -192,8 +192,8 @@ def pair_facets(a: Side, b: Side, reach: float, most: int, *, bumps_match: Rows)
     return ties[_draw(np.arange(len(ties)), most)]
 
 
-def measure_apart(a: Side, b: Side, reach: float) -> Scalars:
-    """Give how far each facet of a leg that lies on another leg lies in front of it [m]."""
+def measure_apart(a: Side, b: Side, reach: float) -> tuple[Scalars, Indices]:
+    """Give how far each facet of a leg lies in front of another leg [m], and the rows of these."""
     one, two = a.facets, b.facets
     size = max(one.leg.size, two.leg.size)
     found = b.tree.query(one.points, distance_upper_bound=float(np.hypot(reach, _BEYOND * size)))
@@ -206,7 +206,7 @@ def measure_apart(a: Side, b: Side, reach: float) -> Scalars:
     off = np.einsum("ni,ni->n", normal, between)
     lateral = np.linalg.norm(between - off[:, None] * normal, axis=1)
     kept = (length > 2 * _AGREE) & (np.abs(off) < reach) & (lateral < _BEYOND * size)
-    return off[kept]
+    return off[kept], one.row[first[kept]]
 
 
 def _draw(which: Indices, most: int) -> Indices:

@@ -27,7 +27,7 @@ _FILLED = 0.4
 """Share of a tile that must lie on the other leg."""
 _FEWEST = 40
 """Facets below which a tile is none."""
-_FLATTEST = 0.05e-3
+FLATTEST = 0.05e-3
 """RMS of a relief below which there is nothing to find [m]."""
 _STRETCHES = (1.0, 0.8, 1.25, 0.65, 1.55)
 """Lengths along the way that a tile may have, in the one it seems to have, in the order in which
@@ -166,7 +166,7 @@ def _lay_side_by_side(
     frame = _frame(facets.normals[which].mean(axis=0), forward[facets.row[which[0]]])
     half = float(np.hypot(*tile)) / 2
     nearest = b.tree.query(centre, distance_upper_bound=half + doubt.most)[1]
-    if nearest == b.tree.n or float(np.std(a.heights[which])) < _FLATTEST:
+    if nearest == b.tree.n or float(np.std(a.heights[which])) < FLATTEST:
         return None
     reach = doubt.reach(
         centre,
@@ -209,7 +209,7 @@ def _find(b: Relief, pair: _Pair, stretch: float) -> _Found | None:
         *(shape + 2 * margin),
     )
     filled = np.isfinite(small)
-    if filled.sum() < _FEWEST / 2 or np.nanstd(small) < _FLATTEST:
+    if filled.sum() < _FEWEST / 2 or np.nanstd(small) < FLATTEST:
         return None
     peak = _peak(correlate(small, large, int(_FILLED * filled.sum())))
     if peak is None:
