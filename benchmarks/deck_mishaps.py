@@ -172,7 +172,7 @@ def _fill_the_disk(root: Path) -> list[Outcome]:
             )
         lines = [one for one in done.stderr.splitlines() if one.startswith("murkscan: ")]
         kept = _recorded(disk / "dive")
-        is_right = len(lines) == 1 and "full" in lines[0] and kept.last > 0
+        is_right = len(lines) == 1 and "No space left" in lines[0] and kept.last > 0
         words_ = " ".join(lines).replace(str(root), ".")
         return [Outcome("the disk is full", words_, math.nan, is_right)]
     finally:
