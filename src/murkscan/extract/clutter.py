@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from .._kernels.matched_filter import score_pixels
-from ..types.arrays import Indices, Scalars
+from ..types.arrays import Indices, Ratios
 from ..types.background import Noise
 from .at_once import map_at_once
 from .matched_filter import MatchedFilter
@@ -77,7 +77,11 @@ def learn_response_law(frames: Sequence[ScanLines], matched: MatchedFilter) -> N
         return matched.noise
     order = np.argsort(level, kind="stable")
     bins = [
-        (np.mean(level[part]), (_GAUSSIAN * np.median(np.abs(answer[part]))) ** 2, len(part))
+        (
+            np.mean(level[part], dtype=float),
+            (_GAUSSIAN * float(np.median(np.abs(answer[part])))) ** 2,
+            len(part),
+        )
         for part in np.array_split(order, min(_BINS, max(len(order) // _FEWEST, 1)))
     ]
     table = np.array(bins, float)
@@ -87,7 +91,7 @@ def learn_response_law(frames: Sequence[ScanLines], matched: MatchedFilter) -> N
     return fit_law(table, matched.noise)
 
 
-def _answers(lines: ScanLines, matched: MatchedFilter, every: int) -> tuple[Scalars, Scalars]:
+def _answers(lines: ScanLines, matched: MatchedFilter, every: int) -> tuple[Ratios, Ratios]:
     """List the level around, and the answer, of some pixels that are not saturated."""
     signal, levels = (np.ascontiguousarray(one[:, ::every]) for one in (lines.signal, lines.levels))
     answers = score_pixels(signal, levels, matched.template, np.array([1.0, 0, 0, 1, 0]))
@@ -96,7 +100,7 @@ def _answers(lines: ScanLines, matched: MatchedFilter, every: int) -> tuple[Scal
     ends = (levels[: -2 * half], levels[2 * half :])
     around = 0.5 * (ends[0].astype(np.float32) + ends[1])
     dark = around < lines.white
-    return around[dark].astype(float), inside[dark].astype(float)
+    return around[dark], inside[dark]
 
 
 def usual_rates() -> Rates:
