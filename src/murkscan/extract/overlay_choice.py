@@ -6,11 +6,9 @@ so a run that was killed, or lost a part, ends with the same pictures as any oth
 
 from collections.abc import Iterable
 
-from ..types.arrays import ColourImage
 from ..types.frame import Frame
 from ..types.part_note import PartNote
 from ..types.stripe import Stripe
-from .overlay import draw_stripe
 
 _POOR = "_poor"
 """What the names of the poorest frames' pictures end in."""
@@ -40,12 +38,12 @@ class Candidates:
         elif self._poorest is None or len(stripe) < len(self._poorest[1]):
             self._poorest = frame, stripe
 
-    def draw(self) -> dict[str, ColourImage]:
-        """Draw them, by the names of their pictures; see `name_candidates`."""
-        drawings = {f"{frame.index:06d}": (frame, stripe) for frame, stripe in self._regular}
+    def by_name(self) -> dict[str, tuple[Frame, Stripe]]:
+        """List them by the names of their pictures; see `name_candidates`."""
+        named = {f"{frame.index:06d}": (frame, stripe) for frame, stripe in self._regular}
         if self._poorest is not None:
-            drawings[f"{self._poorest[0].index:06d}{_POOR}"] = self._poorest
-        return {name: draw_stripe(*found) for name, found in drawings.items()}
+            named[f"{self._poorest[0].index:06d}{_POOR}"] = self._poorest
+        return named
 
 
 def name_candidates(note: PartNote, *, step: int) -> list[str]:

@@ -11,9 +11,9 @@ from ..distribute import AbstractExecutor, Threads
 from ..errors import InputError
 from ..extract import AbstractExtractor, check_stripes, require_extractor
 from ..extract.lasers import check_extractor, join_remarks
+from ..extract.overlay import draw_stripe
 from ..extract.overlay_choice import Candidates, choose_overlays, name_candidates
 from ..project import EXTRACT, ExtractResult, PartNote, Project, describe
-from ..types.arrays import ColourImage
 from ..types.background import Background
 from ..types.frame import Frame
 from ..types.rig import Rig
@@ -115,7 +115,8 @@ class _Part:
     number: int
     stripe: Stripe
     note: PartNote
-    drawings: Mapping[str, ColourImage]
+    shown: Mapping[str, tuple[Frame, Stripe]]
+    """What may be drawn, by the names of the pictures: each is a dozen times as large."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,7 +149,7 @@ class _Job:
             skips=tuple((skip.index, skip.count, skip.reason) for skip in chunk.skips),
             points_of=tuple(int((stripe.laser == laser).sum()) for laser in self.backgrounds),
         )
-        return _Part(chunk.part, stripe, note, candidates.draw())
+        return _Part(chunk.part, stripe, note, candidates.by_name())
 
     def _find_one(self, frames: Iterator[Frame], laser: int) -> Iterator[Stripe]:
         """Find one laser's stripe in each frame."""
@@ -159,8 +160,8 @@ class _Job:
 
     def save(self, part: _Part) -> int:
         """Write one part: its overlays, its stripes, and last its note."""
-        for name, picture in part.drawings.items():
-            self.project.save_overlay(name, picture)
+        for name, found in part.shown.items():
+            self.project.save_overlay(name, draw_stripe(*found))
         self.project.save_stripe_part(part.number, part.stripe, part.note)
         return part.number
 
