@@ -16,11 +16,9 @@ _LEAST = 16.0
 """Exponent beyond which nothing is left beside anything over four e-folds."""
 _ANYTHING = 0.0375
 """Density of a step in height that may be anything."""
-_FAST = {"reassoc", "contract", "nsz"}
-"""What compilers may do to sums: none of them is infinite."""
 
 
-@njit(cache=True, nogil=True, fastmath=_FAST, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def follow_chain(
     positions: np.ndarray, heights: np.ndarray, counts: np.ndarray, grains: np.ndarray,
     evidence: np.ndarray, length: int, birth: float, death: float, miss: float, bends: np.ndarray,
@@ -74,7 +72,7 @@ def follow_chain(
     return np.minimum(ahead * behind, 1.0)
 
 
-@njit(cache=True, nogil=True, fastmath=_FAST, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def _run_back(
     counts: np.ndarray, evidence: np.ndarray, links: np.ndarray, scale: np.ndarray,
     start: float, birth: float, death: float,
@@ -102,7 +100,7 @@ def _run_back(
     return behind
 
 
-@njit(cache=True, nogil=True, fastmath=_FAST, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def _weigh_links(
     positions: np.ndarray, heights: np.ndarray, counts: np.ndarray, grains: np.ndarray,
     evidence: np.ndarray, length: int, death: float, miss: float, bends: np.ndarray,
@@ -142,7 +140,7 @@ def _weigh_step(step: float, gap: int, grain: float, bends: np.ndarray) -> float
     return density + bends[3] * np.exp(-step / broad) / (2.0 * broad)
 
 
-@njit(cache=True, nogil=True, fastmath=_FAST, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def _weigh_changes(log: float, others: np.ndarray, spread: float, like: np.ndarray) -> None:
     """Compute the densities of steps in the logarithm of height from others to one.
 

@@ -10,8 +10,6 @@ _SIZE = 5
 _TURNS = 3
 _MOST, _COLUMNS = 512, 7
 """Neighbours of a centre that are looked at, and what is known of each."""
-_FAST = {"reassoc", "contract", "nsz"}
-"""What compilers may do to sums: none of them is infinite."""
 
 
 @njit(cache=True, nogil=True)
@@ -65,7 +63,7 @@ def _join_one(
     return p[0], np.sqrt(variance)
 
 
-@njit(cache=True, nogil=True, fastmath=_FAST, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def _normal_equations(
     near: np.ndarray, count: int, p: np.ndarray, excess: float, robust: float,
     matrix: np.ndarray, right: np.ndarray,
@@ -104,7 +102,7 @@ def _normal_equations(
     return misfits / max(weights, 1.0)
 
 
-@njit(cache=True, nogil=True, fastmath=_FAST, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def _weigh_errors(
     root: np.ndarray, near: np.ndarray, count: int, p: np.ndarray, excess: float
 ) -> tuple[float, float]:

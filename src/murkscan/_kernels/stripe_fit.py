@@ -143,7 +143,7 @@ def _take_step(p: np.ndarray, step: np.ndarray) -> None:
     p[1] = max(p[1], 0.05)
 
 
-@njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"})
+@njit(cache=True, nogil=True)
 def _dot(first: np.ndarray, second: np.ndarray, count: int) -> float:
     total = 0.0
     for v in range(count):
