@@ -5,7 +5,7 @@ from fractions import Fraction
 import av
 import numpy as np
 
-from murkscan.capture import ArrivedPicture, FrameSplitter, StreamDecoder
+from murkscan.capture import ArrivedPicture, FrameSplitter, LaserColour, StreamDecoder
 from murkscan.capture.coded import CodedPicture, PictureCodec
 
 from ..streams import HEIGHT, WIDTH, picture
@@ -28,7 +28,7 @@ def coded_pictures(count):
 
 
 def test_each_picture_comes_out_at_once_with_its_time_and_arrival():
-    decoder = StreamDecoder(532e-9)
+    decoder = StreamDecoder(LaserColour.mean(532e-9))
     for number, coded in enumerate(coded_pictures(12)):
         (out,) = decoder.decode(number, coded)
         assert (out.number, out.time, out.arrived) == (number, number / 25, float(number))
@@ -37,7 +37,7 @@ def test_each_picture_comes_out_at_once_with_its_time_and_arrival():
 
 
 def test_after_a_gap_it_waits_for_a_keyframe():
-    coded, decoder = coded_pictures(25), StreamDecoder(532e-9)
+    coded, decoder = coded_pictures(25), StreamDecoder(LaserColour.mean(532e-9))
     assert decoder.decode(0, coded[0])
     shown = [n for n in range(5, 25) if decoder.decode(n, coded[n])]
     assert shown == list(range(10, 25))

@@ -3,8 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from murkscan.capture import grey_from_colour
-from murkscan.capture.colour import channel_weights
+from murkscan.capture import LaserColour
 
 wavelengths = st.floats(380e-9, 1100e-9)
 
@@ -13,7 +12,7 @@ wavelengths = st.floats(380e-9, 1100e-9)
 def test_grey_stays_grey_and_white_stays_white(wavelength, depth):
     top = np.iinfo(depth).max
     levels = np.array([[0, 1, 77, 128, top - 1, top]], depth)
-    grey = grey_from_colour(np.dstack([levels] * 3), wavelength)
+    grey = LaserColour.mean(wavelength).grey(np.dstack([levels] * 3))
     assert grey.dtype == depth
     # Single precision holds 16 bits with room; the sum of the weights is 1 to its last bit.
     np.testing.assert_array_equal(grey, levels)
@@ -21,23 +20,22 @@ def test_grey_stays_grey_and_white_stays_white(wavelength, depth):
 
 @given(wavelengths)
 def test_weights_are_a_mean(wavelength):
-    weights = channel_weights(wavelength)
-    assert weights.sum() == pytest.approx(1)
-    assert (weights > 0).all()
+    weights = LaserColour.mean(wavelength).weights
+    assert sum(weights) == pytest.approx(1)
+    assert min(weights) > 0
 
 
 @pytest.mark.parametrize(("wavelength", "channel"), [(450e-9, 2), (532e-9, 1), (650e-9, 0)])
 def test_the_lasers_own_channel_weighs_most(wavelength, channel):
-    assert channel_weights(wavelength).argmax() == channel
+    assert np.argmax(LaserColour.mean(wavelength).weights) == channel
 
 
 def test_levels_are_rounded_not_cut():
     image = np.zeros((1, 3, 3), np.uint8)
     image[0, :, 1] = (1, 2, 3)
-    green = channel_weights(532e-9)[1]
-    np.testing.assert_array_equal(
-        grey_from_colour(image, 532e-9)[0], np.rint(green * np.array([1, 2, 3]))
-    )
+    colour = LaserColour.mean(532e-9)
+    green = colour.weights[1]
+    np.testing.assert_array_equal(colour.grey(image)[0], np.rint(green * np.array([1, 2, 3])))
     assert 0.5 < green < 1  # so that cutting would give 0 1 2 at most
 
 
@@ -46,6 +44,25 @@ def test_a_saturated_line_keeps_its_middle():
     across = np.arange(-20, 21)
     light = 900 * np.exp(-(across**2) / 32)
     line = np.minimum(np.stack([light, 0.12 * light, 0.08 * light], axis=-1), 255)
-    grey = grey_from_colour(np.rint(line)[None].astype(np.uint8), 650e-9)[0].astype(int)
+    grey = LaserColour.mean(650e-9).grey(np.rint(line)[None].astype(np.uint8))[0].astype(int)
     assert (line[:, 0] == 255).sum() > 10
     assert np.flatnonzero(grey == grey.max()).tolist() == pytest.approx([0 + 20], abs=2)
+
+
+def test_a_contrast_takes_other_light_off_and_leaves_noise_both_sides():
+    contrast = LaserColour(532e-9, (-0.5, 1.0, -0.5), pedestal=0.02)
+    picture = np.zeros((1, 4, 3), np.uint8)
+    picture[0] = [[0, 0, 0], [200, 200, 200], [40, 40, 48], [60, 160, 60]]
+    # The pedestal of 5.1 levels stays where light is grey; 4 less light of the laser is 1.1.
+    assert contrast.grey(picture)[0].tolist() == [5, 5, 1, 105]
+
+
+def test_a_white_core_is_closed_between_its_coloured_flanks_and_white_paper_is_not():
+    contrast = LaserColour(532e-9, (-0.5, 1.0, -0.5), pedestal=0.02)
+    picture = np.full((60, 120, 3), 30, np.uint8)
+    picture[:, 20:32] = (60, 160, 60)
+    picture[:, 24:28] = 255
+    picture[:, 60:110] = 255
+    grey = contrast.grey(picture)
+    assert (grey[:, 20:32] == 105).all()
+    assert (grey[:, 40:] == 5).all()

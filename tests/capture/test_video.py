@@ -6,6 +6,7 @@ import pytest
 
 from murkscan.capture import open_recording
 from murkscan.capture.clock import usual_spacing
+from murkscan.capture.colour import LaserColour
 from murkscan.capture.decode import grey_from_video
 from murkscan.errors import FormatError
 
@@ -68,7 +69,7 @@ def test_a_green_laser_gets_the_luma_as_it_is(tmp_path, write_video, kept):
 def test_ten_bits_are_the_same_however_they_are_packed(form):
     deep = RANDOM.integers(64, 940, (60, 48)).astype(np.uint16)
     frame = av.VideoFrame.from_ndarray(deep, "yuv420p10le").reformat(format=form)
-    np.testing.assert_array_equal(grey_from_video(frame, 532e-9), deep[:40])
+    np.testing.assert_array_equal(grey_from_video(frame, LaserColour.mean(532e-9)), deep[:40])
 
 
 @pytest.mark.parametrize(("kept", "top"), [("gray10le", 1023), ("gray12le", 4095)])

@@ -4,14 +4,13 @@ from .arrived import ArrivedFrame as ArrivedFrame
 from .arrived import ArrivedPicture as ArrivedPicture
 from .arrived import FrameSplitter as FrameSplitter
 from .arrived import StreamDecoder as StreamDecoder
-from .arrived import grey_from_camera as grey_from_camera
 from .base import AbstractRecording as AbstractRecording
 from .base import Skip as Skip
 from .base import ignore_skip as ignore_skip
 from .camera import camera_images as camera_images
 from .camera import is_camera as is_camera
 from .coded import CodedPicture as CodedPicture
-from .colour import grey_from_colour as grey_from_colour
+from .colour import LaserColour as LaserColour
 from .field_order import Fields as Fields
 from .folder import ImageFolder as ImageFolder
 from .growing import RecordingProgress as RecordingProgress

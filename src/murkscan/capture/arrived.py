@@ -6,13 +6,12 @@ from fractions import Fraction
 from typing import Any
 
 import av
-import numpy as np
 
 from ..types.arrays import Image
 from ..types.frame import Frame
 from .clock import usual_spacing
 from .coded import CodedPicture
-from .colour import grey_from_colour
+from .colour import LaserColour
 from .decode import grey_from_video
 from .field_order import RUN, RUNS, Fields, decide_order
 from .fields import FieldOrder, split_fields
@@ -50,13 +49,13 @@ class ArrivedFrame:
 class StreamDecoder:
     """Decodes a stream's pictures as they come; after a gap it waits for a keyframe."""
 
-    def __init__(self, wavelength: float) -> None:
+    def __init__(self, colour: LaserColour) -> None:
         """Begin with nothing.
 
         Args:
-            wavelength: Wavelength of the laser, for which colours are weighted [m].
+            colour: How colours become grey levels.
         """
-        self._wavelength = wavelength
+        self._colour = colour
         self._context: Any = None
         self._codec: object = None
         self._next = 0
@@ -96,15 +95,10 @@ class StreamDecoder:
         number, arrived = self._fed.get(decoded.pts, (self._next - 1, 0.0))
         # Those shown earlier have come out already, or never will.
         self._fed = {pts: value for pts, value in self._fed.items() if pts > decoded.pts}
-        image = grey_from_video(decoded, self._wavelength)
+        image = grey_from_video(decoded, self._colour)
         return ArrivedPicture(
             image, number, decoded.pts / TICKS, arrived, bool(decoded.interlaced_frame)
         )
-
-
-def grey_from_camera(image: np.ndarray, wavelength: float) -> Image:
-    """Give a camera's picture (h w, or h w 3 red, green, blue) as grey levels."""
-    return image if image.ndim == 2 else grey_from_colour(image, wavelength)
 
 
 class FrameSplitter:

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ..types.frame import Frame
+from .colour import LaserColour
 from .fields import FieldOrder
 
 
@@ -84,6 +85,10 @@ class AbstractRecording(abc.ABC):
         Raises:
             FormatError: Nothing can be read, or a picture has another size than the first one.
         """
+
+    @abc.abstractmethod
+    def in_colour(self, colour: LaserColour, *remarks: str) -> "AbstractRecording":
+        """Give the same recording with other grey levels, and with remarks on them."""
 
     @abc.abstractmethod
     def fingerprint(self) -> str:

@@ -13,6 +13,7 @@ import numpy as np
 from ..errors import FormatError, InputError
 from ..types.frame import Frame
 from .base import AbstractRecording, Skip, fingerprint_files, ignore_skip, spread_evenly
+from .colour import LaserColour
 from .container import demux_video, is_avi, open_video, picture_ticks
 from .fields import FieldOrder
 from .folder import is_picture, natural_key
@@ -121,6 +122,11 @@ class Chapters(AbstractRecording):
             if some
             for frame in part.sample(some)
         ]
+
+    def in_colour(self, colour: LaserColour, *remarks: str) -> AbstractRecording:
+        """Give the same recording with other grey levels; see the base."""
+        parts = tuple(part.in_colour(colour) for part in self.parts)
+        return replace(self, parts=parts, remarks=(*self.remarks, *remarks))
 
     def fingerprint(self) -> str:
         """Give a text that changes when the recording's frames or their times would."""

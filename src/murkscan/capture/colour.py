@@ -1,5 +1,9 @@
-"""Grey levels from colour, weighted for the colour of the laser."""
+"""From the colours of a picture to grey levels in which the laser's light shows."""
 
+from dataclasses import dataclass
+from typing import final
+
+import cv2
 import numpy as np
 from jaxtyping import Shaped
 
@@ -13,43 +17,90 @@ _CROSSTALK = 0.05
 """Share of any visible light that every filter passes: dyes are not perfect."""
 _GREEN = (490e-9, 580e-9)
 """Wavelengths whose light lands mostly in the luma of YUV video [m]."""
+_FULL = 0.98
+"""Share of the scale from which a channel counts as saturated: compression rounds tops off."""
+_HOLE = 21
+"""Widest saturated core of a line that is closed [px], as in photographs for calibration."""
 
 
-def is_green(wavelength: float) -> bool:
-    """Tell whether the luma of YUV video holds the light of this wavelength [m]."""
-    return _GREEN[0] <= wavelength <= _GREEN[1]
+@final
+@dataclass(frozen=True)
+class LaserColour:
+    """How much each colour of a pixel counts for the laser's light.
+
+    Two kinds are in use. A mean, with weights above 0, is best in the dark: it collects all of the
+    laser's light. A contrast, with weights below 0 for colours that the laser has not, is best
+    where daylight or a lamp shows as well: what their light explains is taken off.
+    """
+
+    wavelength: float
+    """Of the laser in air [m]."""
+    weights: tuple[float, float, float]
+    """Of red, green and blue."""
+    pedestal: float = 0.0
+    """What is added, as a share of the scale, so that noise about 0 keeps both its sides."""
+
+    @staticmethod
+    def mean(wavelength: float) -> "LaserColour":
+        """Weigh colours for the dark; grey stays grey.
+
+        Each weight is the square root of the filter's response: half way from the response itself,
+        best against noise, to equal weights, best where the laser's own channel is saturated and
+        only the others still tell where the middle of the line is.
+        """
+        weights = np.sqrt(filter_response(wavelength))
+        red, green, blue = (weights / weights.sum()).tolist()
+        return LaserColour(wavelength, (red, green, blue))
+
+    @property
+    def is_contrast(self) -> bool:
+        """Tell whether light of other colours is taken off."""
+        return min(self.weights) < 0
+
+    @property
+    def is_luma(self) -> bool:
+        """Tell whether the luma of YUV video serves as well: it holds most of a green laser."""
+        return not self.is_contrast and _GREEN[0] <= self.wavelength <= _GREEN[1]
+
+    def grey(self, image: Shaped[np.ndarray, "h w *rgb"]) -> Image:
+        """Give a picture's grey levels, of the same bit depth, rounded.
+
+        Args:
+            image: Red, green and blue of 8 or 16 bit; a picture without colours stays as it is.
+        """
+        if image.ndim == 2:
+            return image
+        top = np.iinfo(image.dtype).max
+        levels = image.astype(np.float32) @ np.array(self.weights, np.float32)
+        if self.is_contrast:
+            levels = self._close_core(image, levels + np.float32(self.pedestal * top))
+        return np.clip(np.rint(levels), 0, top).astype(image.dtype)
+
+    def _close_core(
+        self, image: Shaped[np.ndarray, "h w 3"], levels: Shaped[np.ndarray, "h w"]
+    ) -> Shaped[np.ndarray, "h w"]:
+        """Give what is saturated, so that its colour is lost, the level of what it lies between."""
+        top = np.iinfo(image.dtype).max
+        is_full = image >= _FULL * top
+        own = is_full[..., int(np.argmax(self.weights))]
+        if not own.any():
+            return levels
+        levels = np.where(is_full.all(axis=-1), np.float32(self.pedestal * top), levels)
+        window = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (_HOLE, _HOLE))
+        return np.where(own, cv2.morphologyEx(levels, cv2.MORPH_CLOSE, window), levels)
 
 
-def channel_weights(wavelength: float) -> Vector:
-    """Give the weights of red, green and blue for a laser's light; they add up to 1.
-
-    Each weight is the square root of the filter's response: half way from the response itself,
-    best against noise, to equal weights, best where the laser's own channel is saturated and
-    only the others still tell where the middle of the line is.
+def filter_response(wavelength: float) -> Vector:
+    """Give the share of a laser's light that a colour camera's red, green and blue filters pass.
 
     Args:
-        wavelength: Wavelength of the laser in air [m].
+        wavelength: Of the laser in air [m]. Beyond the visible a filter no longer matters: the
+            nearest visible colour stands for it.
 
     References:
         Jiang, Liu, Gu, Süsstrunk, What is the space of spectral sensitivity functions for
         digital color cameras?, WACV 2013 (28 cameras measured; the bell curves approximate them).
     """
-    # Beyond the visible a filter no longer matters: the nearest visible colour stands for it.
     visible = min(max(wavelength, 430e-9), 660e-9)
     bells = np.exp(-0.5 * ((visible - _PEAKS) / _WIDTHS) ** 2)
-    weights = np.sqrt(_CROSSTALK + (1 - _CROSSTALK) * bells)
-    return weights / weights.sum()
-
-
-def grey_from_colour(image: Shaped[np.ndarray, "h w 3"], wavelength: float) -> Image:
-    """Weigh red, green and blue for the colour of the laser.
-
-    Args:
-        image: Red, green, blue; 8 or 16 bit.
-        wavelength: Wavelength of the laser in air [m].
-
-    Returns:
-        Grey levels of the same bit depth, rounded; white stays white.
-    """
-    weights = channel_weights(wavelength).astype(np.float32)
-    return np.rint(image.astype(np.float32) @ weights).astype(image.dtype)
+    return _CROSSTALK + (1 - _CROSSTALK) * bells

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
 from typing import Any, final
@@ -19,7 +19,7 @@ from ..io.dive.pictures import RAW, VIDEO, PictureMessage, read_picture
 from ..types.arrays import Image
 from ..types.frame import Frame
 from .base import AbstractRecording, Skip, fingerprint_files, ignore_skip, spread_evenly
-from .colour import grey_from_colour
+from .colour import LaserColour
 from .decode import grey_from_video
 from .field_order import RUN, Fields, decide_order, say_order
 from .fields import FieldOrder, split_fields
@@ -44,8 +44,8 @@ class DivePictures(AbstractRecording):
     remarks: tuple[str, ...]
     file: DiveFile
     index: PictureIndex
-    wavelength: float
-    """Wavelength of the laser, for which colours are weighted [m]."""
+    colour: LaserColour
+    """How colours become grey levels."""
 
     @property
     def starts_anywhere(self) -> bool:
@@ -64,7 +64,7 @@ class DivePictures(AbstractRecording):
         each = self.fields_per_picture
         first = start // each
         number = first
-        for found, image, why in _decode(self.file, self.index, self.wavelength, first):
+        for found, image, why in _decode(self.file, self.index, self.colour, first):
             if found < first:
                 continue
             if found > number:
@@ -84,7 +84,7 @@ class DivePictures(AbstractRecording):
         """Read about `count` frames spread evenly over the recording; see the base."""
         frames: list[Frame] = []
         for number in spread_evenly(len(self.index.times), count):
-            found, image = next(_pictures_near(self.file, self.index, self.wavelength, number, 1))
+            found, image = next(_pictures_near(self.file, self.index, self.colour, number, 1))
             if image is not None and self._has_time(found):
                 fields = self._split(image, found)
                 frames.append(fields[len(frames) % len(fields)])
@@ -94,10 +94,14 @@ class DivePictures(AbstractRecording):
             raise FormatError(f"No picture in {self.path} can be decoded.")
         return sorted(frames, key=lambda frame: frame.index)
 
+    def in_colour(self, colour: LaserColour, *remarks: str) -> AbstractRecording:
+        """Give the same recording with other grey levels; see the base."""
+        return replace(self, colour=colour, remarks=(*self.remarks, *remarks))
+
     def fingerprint(self) -> str:
         """Give a text that changes when the recording's frames or their times would."""
         times = self.index.times.tobytes().hex()[:64]
-        reading = (self.index.topic.name, self.order, times, self.index.jitter, self.wavelength)
+        reading = (self.index.topic.name, self.order, times, self.index.jitter, self.colour)
         return fingerprint_files(self.file.files, reading)
 
     def _has_time(self, number: int) -> bool:
@@ -133,7 +137,7 @@ class DivePictures(AbstractRecording):
 
 
 def open_dive_pictures(
-    contents: DiveContents, topic: str | None, wavelength: float, fields: Fields
+    contents: DiveContents, topic: str | None, colour: LaserColour, fields: Fields
 ) -> DivePictures:
     """Open the pictures of a dive's file; see `open_recording`.
 
@@ -143,7 +147,7 @@ def open_dive_pictures(
     """
     index, file = contents.choose_pictures(topic), contents.file
     _refuse_unread(file, index)
-    first = next((image for _, image, _ in _first(file, index, wavelength)), None)
+    first = next((image for _, image, _ in _first(file, index, colour)), None)
     if first is None:
         raise FormatError(
             f"None of the first {min(_FIRST, len(index.times))} pictures of {index.topic.name} in "
@@ -153,7 +157,7 @@ def open_dive_pictures(
 
     def runs(count: int) -> Iterator[Sequence[Image]]:
         for number in spread_evenly(max(len(index.times) - RUN, 1), count):
-            run = _pictures_near(file, index, wavelength, number, RUN)
+            run = _pictures_near(file, index, colour, number, RUN)
             images = [image for _, image in run if image is not None]
             yield [image for image in images if image.shape == (height, width)]
 
@@ -167,7 +171,7 @@ def open_dive_pictures(
         remarks=(*say_order(order, fields), *contents.damage, *_say_clock(contents, index)),
         file=file,
         index=index,
-        wavelength=wavelength,
+        colour=colour,
     )
 
 
@@ -182,9 +186,9 @@ def _refuse_unread(file: DiveFile, index: PictureIndex) -> None:
 
 
 def _first(
-    file: DiveFile, index: PictureIndex, wavelength: float
+    file: DiveFile, index: PictureIndex, colour: LaserColour
 ) -> Iterator[tuple[int, Image, str]]:
-    for found, image, why in _decode(file, index, wavelength, 0):
+    for found, image, why in _decode(file, index, colour, 0):
         if found >= _FIRST:
             return
         if image is not None:
@@ -212,7 +216,7 @@ def _spacing(index: PictureIndex) -> float:
 
 
 def _pictures_near(
-    file: DiveFile, index: PictureIndex, wavelength: float, number: int, count: int
+    file: DiveFile, index: PictureIndex, colour: LaserColour, number: int, count: int
 ) -> Iterator[tuple[int, Image | None]]:
     """Decode some pictures in a row at a number, or before it, near a keyframe.
 
@@ -222,7 +226,7 @@ def _pictures_near(
     if len(keys):
         number = min(number, int(keys[-1]) + _NEAR)
     given = 0
-    with closing(_decode(file, index, wavelength, number)) as items:
+    with closing(_decode(file, index, colour, number)) as items:
         for found, image, _ in items:
             if found >= number:
                 yield found, image
@@ -234,7 +238,7 @@ def _pictures_near(
 
 
 def _decode(
-    file: DiveFile, index: PictureIndex, wavelength: float, first: int
+    file: DiveFile, index: PictureIndex, colour: LaserColour, first: int
 ) -> Generator[tuple[int, Image | None, str], None, None]:
     """Decode from the keyframe before a picture on: number, image or None, and why there is none.
 
@@ -250,15 +254,15 @@ def _decode(
             continue
         if picture.codec in VIDEO:
             decoder = decoder or av.CodecContext.create(VIDEO[picture.codec], "r")
-            items = list(_feed(decoder, number, picture.data, wavelength))
+            items = list(_feed(decoder, number, picture.data, colour))
         else:
-            items = [_read_still(number, picture, wavelength)]
+            items = [_read_still(number, picture, colour)]
         for item in items:
             # A decoder may hold pictures back, so what came without data waits for its turn.
             while empty and empty[0][0] < item[0]:
                 yield empty.pop(0)
             yield item
-    last = [] if decoder is None else _feed(decoder, 0, b"", wavelength)
+    last = [] if decoder is None else _feed(decoder, 0, b"", colour)
     yield from sorted([*last, *empty], key=lambda item: item[0])
 
 
@@ -283,7 +287,7 @@ def _messages(
 
 
 def _feed(
-    decoder: Any, number: int, data: bytes, wavelength: float
+    decoder: Any, number: int, data: bytes, colour: LaserColour
 ) -> Iterator[tuple[int, Image | None, str]]:
     """Give the decoder a packet, or with no data the end, and take what comes out."""
     packet = None
@@ -296,11 +300,11 @@ def _feed(
         return
     for one in decoded:
         if one.pts is not None and not one.is_corrupt:
-            yield one.pts, grey_from_video(one, wavelength), ""
+            yield one.pts, grey_from_video(one, colour), ""
 
 
 def _read_still(
-    number: int, picture: PictureMessage, wavelength: float
+    number: int, picture: PictureMessage, colour: LaserColour
 ) -> tuple[int, Image | None, str]:
     try:
         image = picture.as_array() if picture.codec in RAW else _decode_still(picture.data)
@@ -308,7 +312,7 @@ def _read_still(
         image = None
     if image is None:
         return number, None, "cannot be decoded"
-    return number, image if image.ndim == 2 else grey_from_colour(image, wavelength), ""
+    return number, colour.grey(image), ""
 
 
 def _decode_still(data: bytes) -> np.ndarray | None:

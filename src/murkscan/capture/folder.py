@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
 from typing import final
@@ -13,7 +13,7 @@ from ..io.images import NOT_READ, read_image
 from ..types.arrays import Image
 from ..types.frame import Frame
 from .base import AbstractRecording, Skip, fingerprint_files, ignore_skip, spread_evenly
-from .colour import grey_from_colour
+from .colour import LaserColour
 from .fields import FieldOrder, split_fields
 
 _SUFFIXES = (
@@ -83,8 +83,8 @@ class ImageFolder(AbstractRecording):
     """Time of each picture [s], increasing, or its number where it has none."""
     spacing: float
     """Usual time between two pictures [s]; 1 where they have no times."""
-    wavelength: float
-    """Wavelength of the laser, for which colours are weighted [m]."""
+    colour: LaserColour
+    """How colours become grey levels."""
 
     @property
     def starts_anywhere(self) -> bool:
@@ -128,15 +128,19 @@ class ImageFolder(AbstractRecording):
             raise FormatError(f"None of the {len(self.files)} pictures in {self.path} can be read.")
         return frames
 
+    def in_colour(self, colour: LaserColour, *remarks: str) -> AbstractRecording:
+        """Give the same recording with other grey levels; see the base."""
+        return replace(self, colour=colour, remarks=(*self.remarks, *remarks))
+
     def fingerprint(self) -> str:
         """Give a text that changes when the recording's frames or their times would."""
-        reading = (self.order, self.is_timed, self.times, self.wavelength)
+        reading = (self.order, self.is_timed, self.times, self.colour)
         names = dict.fromkeys(self.files)
         return fingerprint_files([locate(self.path, name) for name in names], reading)
 
     def _read(self, picture: int) -> Image:
         file = locate(self.path, self.files[picture])
-        return read_grey(file, self.wavelength, self.pages[picture])
+        return read_grey(file, self.colour, self.pages[picture])
 
     def _split(self, image: Image, picture: int) -> list[Frame]:
         height, width = image.shape
@@ -166,8 +170,8 @@ def locate(path: Path, name: str) -> Path:
     return path if path.name == name and path.is_file() else path / name
 
 
-def read_grey(path: Path, wavelength: float, page: int = 0) -> Image:
-    """Read a picture as grey levels, 8 or 16 bit; colours are weighted for the laser's.
+def read_grey(path: Path, colour: LaserColour, page: int = 0) -> Image:
+    """Read a picture as grey levels, 8 or 16 bit.
 
     Raises:
         FormatError: The file is no picture, or a broken one.
@@ -176,4 +180,4 @@ def read_grey(path: Path, wavelength: float, page: int = 0) -> Image:
         image = read_image(path, page)
     except OSError as error:
         raise FormatError(f"{path} cannot be read: {error.strerror or error}.") from error
-    return image if image.ndim == 2 else grey_from_colour(image, wavelength)
+    return colour.grey(image)

@@ -14,9 +14,11 @@ from ..io.dive.contents import read_contents
 from ..io.dive.names import is_dive
 from ..io.picture_notes import count_pages
 from ..types.arrays import Image
+from .ambient import see_by_colour
 from .base import AbstractRecording
 from .chapters import find_chapters, open_chapters
 from .clock import Clock, usual_spacing
+from .colour import LaserColour
 from .container import open_video, picture_ticks
 from .decode import Picture, decode_pictures, grey_from_video, picture_time
 from .dive import open_dive_pictures
@@ -44,7 +46,9 @@ def open_recording(
     Args:
         path: The folder or the file; several files in order, or a folder with nothing but videos,
             are chapters of one recording.
-        wavelength: Wavelength of the laser, for which colours are weighted [m].
+        wavelength: Wavelength of the laser, for which colours are weighted [m]. Where daylight or
+            a lamp shows as well, and the line's colour tells it better, a frame shows how much
+            more of that colour there is.
         fps: Pictures a second: for a folder without times.csv, or in place of a video's own times
             (a high-speed camera's file plays slowly). Without either, a frame's time is the
             number of its picture.
@@ -60,28 +64,30 @@ def open_recording(
     paths = [Path(path)] if isinstance(path, Path | str) else [Path(one) for one in path]
     for one in paths:
         _check(one, wavelength, fps)
+    colour = LaserColour.mean(wavelength)
     chapters = find_chapters(paths)
     if len(chapters) > 1:
-        return open_chapters([_open_one(one, wavelength, fps, fields, topic) for one in chapters])
-    return _open_one(chapters[0], wavelength, fps, fields, topic)
+        parts = [_open_one(one, colour, fps, fields, topic) for one in chapters]
+        return see_by_colour(open_chapters(parts), wavelength)
+    return see_by_colour(_open_one(chapters[0], colour, fps, fields, topic), wavelength)
 
 
 def _open_one(
-    path: Path, wavelength: float, fps: float | None, fields: Fields, topic: str | None
+    path: Path, colour: LaserColour, fps: float | None, fields: Fields, topic: str | None
 ) -> AbstractRecording:
     if is_dive(path):
         if fps is not None:
             raise InputError(f"{path} has times of its own; leave out --fps.")
-        return open_dive_pictures(read_contents(path), topic, wavelength, fields)
+        return open_dive_pictures(read_contents(path), topic, colour, fields)
     if topic is not None:
         raise InputError(f"{path} has no topics; leave out --topic.")
     if path.is_dir():
-        return open_folder(path, wavelength, fps, fields)
+        return open_folder(path, colour, fps, fields)
     if is_picture(path):
         if count_pages(path) == 1:
             raise FormatError(f"{path} is a single picture; give the folder that it lies in.")
-        return open_folder(path, wavelength, fps, fields)
-    return _open_video(path, wavelength, fps, fields)
+        return open_folder(path, colour, fps, fields)
+    return _open_video(path, colour, fps, fields)
 
 
 def _check(path: Path, wavelength: float, fps: float | None) -> None:
@@ -104,7 +110,7 @@ def _check(path: Path, wavelength: float, fps: float | None) -> None:
         raise InputError(f"A recording needs more than 0 pictures a second, got {fps:g}.")
 
 
-def _open_video(path: Path, wavelength: float, fps: float | None, fields: Fields) -> Video:
+def _open_video(path: Path, colour: LaserColour, fps: float | None, fields: Fields) -> Video:
     facts = _look_at(path)
     times = [facts.start + facts.duration * i / RUNS[0] for i in range(RUNS[0])]
     first_runs = list(read_runs(path, times, RUNS[0] * RUN))
@@ -116,7 +122,7 @@ def _open_video(path: Path, wavelength: float, fps: float | None, fields: Fields
         times = [facts.start + facts.duration * i / count for i in range(count)]
         found = first_runs if count == RUNS[0] else read_runs(path, times, count * RUN)
         return (
-            [grey_from_video(d, wavelength) for d in piece if (d.width, d.height) == facts.size]
+            [grey_from_video(d, colour) for d in piece if (d.width, d.height) == facts.size]
             for run in found
             for piece in _cut_run(run)
         )
@@ -131,7 +137,7 @@ def _open_video(path: Path, wavelength: float, fps: float | None, fields: Fields
         num_frames=claimed * (1 if order == "progressive" else 2) or None,
         remarks=(*say_order(order, fields), *facts.remarks),
         clock=clock,
-        wavelength=wavelength,
+        colour=colour,
     )
 
 

@@ -14,6 +14,7 @@ from ..io.times_csv import read_times
 from ..types.arrays import Image
 from .base import spread_evenly
 from .clock import usual_spacing
+from .colour import LaserColour
 from .field_order import RUN, Fields, decide_order, say_order
 from .folder import TIMES, ImageFolder, list_pictures, locate, read_grey
 
@@ -24,15 +25,15 @@ _CLOCK = re.compile(r"\d{10,19}(\.\d+)?")
 """A time since 1970 in a picture's name: seconds, or one of the smaller units."""
 
 
-def open_folder(path: Path, wavelength: float, fps: float | None, fields: Fields) -> ImageFolder:
+def open_folder(path: Path, colour: LaserColour, fps: float | None, fields: Fields) -> ImageFolder:
     """Open a folder of pictures, or a TIFF of several pages; see `open_recording`."""
     names = list_pictures(path) if path.is_dir() else (path.name,)
     files, pages = _turn_pages(path, names)
     times, clock = _find_times(path, files, pages, fps)
     read = list(zip(files, pages, strict=True))
-    first = _first_image(path, read, wavelength)
+    first = _first_image(path, read, colour)
     height, width = first.shape
-    order = decide_order(fields, lambda count: _runs(path, read, wavelength, count))
+    order = decide_order(fields, lambda count: _runs(path, read, colour, count))
     return ImageFolder(
         path=path,
         size=(width, height),
@@ -49,7 +50,7 @@ def open_folder(path: Path, wavelength: float, fps: float | None, fields: Fields
         pages=pages,
         times=times,
         spacing=usual_spacing([times]) or 1 / (fps or 1.0),
-        wavelength=wavelength,
+        colour=colour,
     )
 
 
@@ -126,10 +127,10 @@ def _say_bits(image: Image) -> tuple[str, ...]:
     )
 
 
-def _first_image(path: Path, read: Sequence[tuple[str, int]], wavelength: float) -> Image:
+def _first_image(path: Path, read: Sequence[tuple[str, int]], colour: LaserColour) -> Image:
     for name, page in read:
         try:
-            return read_grey(locate(path, name), wavelength, page)
+            return read_grey(locate(path, name), colour, page)
         except FormatError:
             continue
     raise FormatError(
@@ -138,7 +139,7 @@ def _first_image(path: Path, read: Sequence[tuple[str, int]], wavelength: float)
 
 
 def _runs(
-    path: Path, read: Sequence[tuple[str, int]], wavelength: float, count: int
+    path: Path, read: Sequence[tuple[str, int]], colour: LaserColour, count: int
 ) -> Iterable[list[Image]]:
     """Read runs of pictures that follow one another, those of a run all of one size."""
     # Runs that share pictures would only seem to agree.
@@ -147,7 +148,7 @@ def _runs(
         run: list[Image] = []
         for name, page in read[start : start + RUN]:
             try:
-                image = read_grey(locate(path, name), wavelength, page)
+                image = read_grey(locate(path, name), colour, page)
             except FormatError:
                 continue
             if not run or image.shape == run[0].shape:

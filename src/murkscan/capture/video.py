@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import islice
 from pathlib import Path
@@ -14,6 +14,7 @@ from ..errors import FormatError
 from ..types.frame import Frame
 from .base import AbstractRecording, Skip, fingerprint_files, ignore_skip, spread_evenly
 from .clock import Clock
+from .colour import LaserColour
 from .container import open_video
 from .decode import Loss, grey_from_video, picture_time
 from .fields import FieldOrder, split_fields
@@ -46,8 +47,8 @@ class Video(AbstractRecording):
     remarks: tuple[str, ...]
     clock: Clock
     """What the container's times mean."""
-    wavelength: float
-    """Wavelength of the laser, for which colours are weighted [m]."""
+    colour: LaserColour
+    """How colours become grey levels."""
 
     @property
     def starts_anywhere(self) -> bool:
@@ -110,9 +111,13 @@ class Video(AbstractRecording):
             raise FormatError(f"No picture in {self.path} can be decoded; record it anew.")
         return frames
 
+    def in_colour(self, colour: LaserColour, *remarks: str) -> AbstractRecording:
+        """Give the same recording with other grey levels; see the base."""
+        return replace(self, colour=colour, remarks=(*self.remarks, *remarks))
+
     def fingerprint(self) -> str:
         """Give a text that changes when the recording's frames or their times would."""
-        reading = (self.order, self.is_timed, self.clock, self.wavelength)
+        reading = (self.order, self.is_timed, self.clock, self.colour)
         return fingerprint_files([self.path], reading)
 
     def _split(self, picture: TimedPicture) -> list[Frame]:
@@ -123,7 +128,7 @@ class Video(AbstractRecording):
                 f"px, but the recording is {width} x {height} px; cut the video there."
             )
         return split_fields(
-            grey_from_video(decoded, self.wavelength),
+            grey_from_video(decoded, self.colour),
             picture=picture.number,
             time=picture.time,
             period=picture.period,

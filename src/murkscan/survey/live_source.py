@@ -18,8 +18,8 @@ from ..capture import (
     DiveFolder,
     DiveProgress,
     FrameSplitter,
+    LaserColour,
     StreamDecoder,
-    grey_from_camera,
     is_camera,
     record_dive,
 )
@@ -105,6 +105,7 @@ class RecordedSource(LiveSource):
         """Take what `record_dive` takes, and the fields as `FrameSplitter` does."""
         super().__init__()
         self._source, self._folder, self._rig = source, folder, rig
+        self._colour = LaserColour.mean(rig.wavelength)
         self._timeout, self._patience, self._fields = timeout, patience, fields
         self._coded = Mailbox[tuple[int, CodedPicture]](_CODED)
         self._images = Mailbox[tuple[np.ndarray, ArrivedPicture]](_IMAGES)
@@ -162,7 +163,7 @@ class RecordedSource(LiveSource):
 
     def _decode(self, finder: LiveFinder) -> None:
         """Decode what has come, in a thread of its own, so that recording never waits for it."""
-        decoder, splitter = StreamDecoder(self._rig.wavelength), FrameSplitter(self._fields)
+        decoder, splitter = StreamDecoder(self._colour), FrameSplitter(self._fields)
         try:
             while self._backlog or not (self._coded.is_done and self._images.is_done):
                 for picture in self._next_pictures(decoder, finder):
@@ -177,8 +178,7 @@ class RecordedSource(LiveSource):
             image = self._images.get(_WAIT)
             if image is None:
                 return []
-            grey = grey_from_camera(image[0], self._rig.wavelength)
-            return [replace(image[1], image=grey)]
+            return [replace(image[1], image=self._colour.grey(image[0]))]
         if not self._backlog:
             came = self._coded.get(_WAIT)
             self._backlog += [] if came is None else [came]

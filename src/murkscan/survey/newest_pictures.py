@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..capture import CodedPicture, DiveFolder, StreamDecoder, grey_from_camera, record_dive
+from ..capture import CodedPicture, DiveFolder, LaserColour, StreamDecoder, record_dive
 from ..errors import MurkscanError, StreamLost
 from ..live import Mailbox
 from ..types.arrays import Image
@@ -31,7 +31,7 @@ class NewestPictures:
             timeout: Longest wait for the stream and for its next picture [s].
         """
         self._recording = (source, DiveFolder(folder), timeout)
-        self._wavelength = wavelength
+        self._colour = LaserColour.mean(wavelength)
         self._coded = Mailbox[tuple[int, CodedPicture]](_CODED)
         self._newest = Mailbox[tuple[Image, float]](1)
         self._stopping, self._count = threading.Event(), 0
@@ -80,10 +80,10 @@ class NewestPictures:
         self._count += 1
 
     def _see(self, image: np.ndarray, time: float) -> None:
-        self._newest.put((grey_from_camera(image, self._wavelength), time))
+        self._newest.put((self._colour.grey(image), time))
 
     def _decode(self) -> None:
-        decoder = StreamDecoder(self._wavelength)
+        decoder = StreamDecoder(self._colour)
         try:
             while not self._coded.is_done:
                 item = self._coded.get(_WAIT)
