@@ -19,13 +19,15 @@ frames spread over all of it, and is not told anything else.
   that are right. *Not judged* are points where the eye cannot tell, and three scan lines to
   either side of an end of the line.
 - In photographs, the line on the board and on what lies behind it is the line wherever it stands
-  out to the eye in the laser's colour. Finders see grey: where green on white is all white, so
-  that only its hue tells, nothing is judged.
+  out to the eye in the laser's colour. Where green on white is all white to the eye, so that only
+  its hue tells, nothing is judged. Finders see what `open_recording` gives: grey levels, and in
+  *green_laser*, *arm_poses* and *underwater_line* how much more of the laser's colour there is than
+  the other light explains.
 - *Along the edge*: false points within 4 px of an end of their scan line.
 
 Photographs of a board that was moved in between are no recording of a dive; they show what a
-finder does with daylight, print and edges. No finder of the package is made for a chequered board
-in full light: calibration looks only at the board's paper, in the laser's own colour."""
+finder does with daylight, print and edges. Left are the fringes
+of bright squares, where lens and sensor part the colours."""
 
 AFTER = """\
 Heights are above the plane of the same scan's bed, as depth over travel and row along the
