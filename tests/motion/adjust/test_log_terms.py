@@ -7,8 +7,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from murkscan.motion.adjust.instruments import Heading, Place, Rates, Tilt, Velocity
-from murkscan.motion.adjust.path import Path
-from murkscan.motion.adjust.spline import Knots, evaluate_rotation
+from murkscan.motion.adjust.path import Path, left_jacobian
+from murkscan.motion.adjust.spline import Knots, evaluate, evaluate_rotation
 
 INSTRUMENTS = [Tilt(), Heading(1.0), Velocity(), Rates(), Place((0, 1, 2)), Place((2,))]
 TIMES = np.array([0.1, 0.9, 1.55, 2.3])
@@ -39,6 +39,17 @@ def test_slopes_are_what_small_steps_show(path, instrument):
     )
     found = instrument.subtract(ahead, behind) / 2
     np.testing.assert_allclose(found, expected, atol=2e-3 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("turned", [1e-4, 0.5])
+def test_poses_are_what_the_splines_say(path, turned):
+    turns = turned * np.random.default_rng(1).normal(size=path.turns.shape)
+    path = replace(path, turns=turns)
+    poses, by = path.at(TIMES), evaluate(KNOTS, turns, TIMES)
+    turned_about = Rotation.from_rotvec(by) * evaluate_rotation(KNOTS, path.reference, TIMES)
+    np.testing.assert_allclose(poses.rotations, turned_about.as_matrix(), atol=1e-12)
+    np.testing.assert_allclose(poses.positions, evaluate(KNOTS, path.positions, TIMES), atol=1e-12)
+    np.testing.assert_allclose(poses.turned_by, left_jacobian(by), atol=1e-12)
 
 
 def test_velocity_and_rates_are_the_derivatives_of_the_path(path):

@@ -1,14 +1,16 @@
 """The way of a vehicle in one pass, as numbers that an adjustment can change."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
+from ..._kernels.spline_poses import evaluate_poses
 from ...types.arrays import Indices, Points, Scalars
 from ...types.trajectory import Trajectory
-from .spline import Knots, Matrices, Weights, evaluate, evaluate_rotation, rotation_rate
+from .spline import Knots, Matrices, Weights, evaluate, rotation_rate
 
 WIDTH = 6
 """Unknowns a control value: three of the position [m], three of the turn [rad]."""
@@ -52,17 +54,17 @@ class Path:
 
     def at(self, times: Scalars) -> Poses:
         """Give the poses at some times within the knots [s]."""
-        first, weights = self.knots.weights(times)
-        turns = evaluate(self.knots, self.turns, times)
-        reference = evaluate_rotation(self.knots, self.reference, times)
-        return Poses(
-            times,
-            evaluate(self.knots, self.positions, times),
-            (Rotation.from_rotvec(turns) * reference).as_matrix(),
-            left_jacobian(turns),
-            first,
-            weights,
+        first, along = self.knots.locate(times)
+        weights, positions, rotations, turned_by = evaluate_poses(
+            first, along, self.positions, self.turns, *self._reference_steps
         )
+        return Poses(times, positions, rotations, turned_by, first, weights)
+
+    @cached_property
+    def _reference_steps(self) -> tuple[Float[np.ndarray, "k 4"], Float[np.ndarray, "j 3"]]:
+        """Give R₀'s control rotations as quaternions, and the turn from each to the next [rad]."""
+        steps = (self.reference[:-1].inv() * self.reference[1:]).as_rotvec()
+        return self.reference.as_quat(scalar_first=True), steps
 
     def velocity(self, times: Scalars, *, derivative: int = 1) -> Points:
         """Give the velocity along the world's axes [m/s], or the acceleration [m/s²]."""

@@ -10,6 +10,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from jaxtyping import Float, Int
 
+from ..._kernels.spline_poses import lever_points
 from ..._kernels.ties import sum_groups, sum_vectors
 from ...types.arrays import Directions, Indices, Points, Scalars
 from .path import WIDTH, Path, Poses
@@ -53,7 +54,7 @@ class Ties:
 
 def as_seen(number: Indices, times: Scalars, points: Points, paths: Sequence[Path]) -> Points:
     """Carry points of the world into the frame of the vehicle that is to have seen them [m]."""
-    at, _, _ = _moments(number, times, points, paths)
+    at, _ = _moments(number, times, paths)
     return np.einsum("nji,nj->ni", at.rotations, points - at.positions)
 
 
@@ -73,46 +74,30 @@ class LinearTies:
 
 def linearise(ties: Ties, paths: Sequence[Path]) -> LinearTies:
     """Give the ties' residuals and slopes."""
-    at_a, place_a, arms_a = _moments(ties.pass_a, ties.time_a, ties.point_a, paths)
-    at_b, place_b, arms_b = _moments(ties.pass_b, ties.time_b, ties.point_b, paths)
-    between = at_a.positions + arms_a - at_b.positions - arms_b
-    return LinearTies(
-        np.einsum("ni,ni->n", ties.direction, between) - ties.offset,
-        _slopes(ties.direction, arms_a, at_a),
-        _slopes(ties.direction, arms_b, at_b),
-        at_a.weights,
-        at_b.weights,
-        place_a,
-        place_b,
+    at_a, first_a = _moments(ties.pass_a, ties.time_a, paths)
+    at_b, first_b = _moments(ties.pass_b, ties.time_b, paths)
+    (place_a, slopes_a), (place_b, slopes_b) = (
+        lever_points(at.positions, at.rotations, at.turned_by, points, ties.direction)
+        for at, points in ((at_a, ties.point_a), (at_b, ties.point_b))
     )
+    residuals = place_a - place_b - ties.offset
+    return LinearTies(residuals, slopes_a, slopes_b, at_a.weights, at_b.weights, first_a, first_b)
 
 
-def _moments(
-    number: Indices, times: Scalars, points: Points, paths: Sequence[Path]
-) -> tuple[Poses, Indices, Points]:
-    """Give poses at some times of some passes, the place of their control values, and arms."""
+def _moments(number: Indices, times: Scalars, paths: Sequence[Path]) -> tuple[Poses, Indices]:
+    """Give poses at some times of some passes, and the place of their control values."""
     count = len(times)
     found = Poses(times, np.empty((count, 3)), np.empty((count, 3, 3)), np.empty((count, 3, 3)),
                   np.empty(count, np.int64), np.empty((count, 4)))  # fmt: skip
     place, start = np.empty(count, np.int64), 0
     for i, path in enumerate(paths):
         mine = np.flatnonzero(number == i)
-        if len(mine) == 0:
-            start += path.knots.num_controls
-            continue
-        # Few moments stand behind many ties: those of the rows of cells.
-        moments, which = np.unique(times[mine], return_inverse=True)
-        poses = path.at(moments)
+        poses = path.at(times[mine])
         for name in ("positions", "rotations", "turned_by", "first", "weights"):
-            getattr(found, name)[mine] = getattr(poses, name)[which]
-        place[mine] = start + poses.first[which]
+            getattr(found, name)[mine] = getattr(poses, name)
+        place[mine] = start + poses.first
         start += path.knots.num_controls
-    return found, place, np.einsum("nij,nj->ni", found.rotations, points)
-
-
-def _slopes(direction: Directions, arms: Points, poses: Poses) -> Float[np.ndarray, "n 6"]:
-    turn = np.einsum("nji,nj->ni", poses.turned_by, np.cross(arms, direction))
-    return np.hstack([direction, turn])
+    return found, place
 
 
 @dataclass(frozen=True, eq=False)
