@@ -11,7 +11,7 @@ from ..types.navigation import Navigation, NavigationAccuracy, Readings
 from ..types.pose import Pose
 from ..types.trajectory import Trajectory
 
-_CLOCK = 0.5
+CLOCK = 0.5
 """Standard deviation of a log's clock of which nothing is stated [s]: recorders stamp pictures
 when they arrive."""
 
@@ -84,6 +84,6 @@ def by_recording(navigation: Navigation, start: float, mount: Pose) -> Measured:
         origin = navigation.position.values[0]
     accuracy = navigation.accuracy
     if not accuracy.clock_offset:
-        accuracy = replace(accuracy, clock_offset=_CLOCK)
+        accuracy = replace(accuracy, clock_offset=CLOCK)
     moved = replace(navigation, accuracy=accuracy).moved(seconds=-start, shift=-origin)
     return Measured(moved, mount, is_placed=True, origin=origin)

@@ -15,6 +15,12 @@ from ...types.trajectory import Trajectory
 from .path import Path
 from .spline import Knots, evaluate_rotation
 
+_CLOCK_SIGMAS = 3.0
+"""Standard deviations by which a log's clock may be off for its readings still to lie on a path:
+were readings to leave it, or to come to it, as the clock is moved, that would look like knowledge
+of the clock, and a place that was measured once, where the way begins, might be lost."""
+_LONGEST_MARGIN = 1.0
+"""Longest time that a path goes on before and behind its profiles [s]: recorders are no later."""
 _STIFF = 1e-3
 """Weight of a control value's second difference beside one pose: where there are poses, none."""
 
@@ -35,7 +41,8 @@ def first_path(
         step: Length of a piece [s].
         start: world_from_vehicle, whose attitude is taken in place of the log's.
     """
-    knots = Knots.over(first, last, step)
+    margin = min(_CLOCK_SIGMAS * navigation.accuracy.clock_offset, _LONGEST_MARGIN)
+    knots = Knots.over(first, last, step, margin)
     nothing = np.zeros((knots.num_controls, 3))
     if start is not None:
         turns = Rotation.from_quat(start.quaternions, scalar_first=True)

@@ -128,7 +128,7 @@ class Log:
         return times + offset + drift * self._since_start(times, path)
 
     def _since_start(self, times: Scalars, path: Path) -> Scalars:
-        return times - path.knots.start + self.elapsed
+        return times - path.knots.first + self.elapsed
 
     def _clock_terms(
         self, kind: Instrument, path: Path, times: Scalars
@@ -169,7 +169,7 @@ class Log:
         if log.position is None or log.accuracy.position_noise is None:
             knows_depth = log.depth is not None and log.accuracy.depth_noise is not None
             place = Place((0, 1) if knows_depth else (0, 1, 2))
-            poses = path.at(np.array([path.knots.start]))
+            poses = path.at(np.array([path.knots.first]))
             off = place.predict(path, poses) - self.origin[list(place.axes)]
             sigma = self.origin_sigma
             parts.append(self._plain(off, place.slopes(path, poses), poses, sigma, []))

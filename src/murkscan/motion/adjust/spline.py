@@ -36,11 +36,19 @@ class Knots:
     step: float
     """Length of a piece [s]."""
     num_pieces: int
+    margin: float = 0.0
+    """How long before what is asked for the first piece begins [s]."""
 
     @classmethod
-    def over(cls, first: float, last: float, step: float) -> "Knots":
-        """Lay knots over an interval of time [s], both ends included."""
-        return cls(first, step, max(math.ceil((last - first) / step + 1e-9), 1))
+    def over(cls, first: float, last: float, step: float, margin: float = 0.0) -> "Knots":
+        """Lay knots over an interval of time and a margin on both sides [s], ends included."""
+        whole = last - first + 2 * margin
+        return cls(first - margin, step, max(math.ceil(whole / step + 1e-9), 1), margin)
+
+    @property
+    def first(self) -> float:
+        """When what is asked for begins [s]."""
+        return self.start + self.margin
 
     @property
     def num_controls(self) -> int:

@@ -1,0 +1,59 @@
+"""A path follows a vehicle as closely as ties see it, and keeps what its log has measured once."""
+
+import numpy as np
+import pytest
+
+from murkscan.motion.adjust.first_path import first_path, fit_path
+from murkscan.motion.adjust.log_terms import Log
+from murkscan.motion.adjust.settings import AdjustSettings
+from murkscan.motion.adjust.solve import State, draw_errors, improve
+from murkscan.motion.adjust.unknowns import Layout
+from murkscan.simulate.vehicle import Unrest, drive
+from murkscan.types.navigation import Navigation, NavigationAccuracy, Readings
+
+pytestmark = pytest.mark.without_types
+
+DURATION, SETTINGS = 10.0, AdjustSettings()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_pieces_follow_a_small_vehicle_in_waves(seed):
+    # The vehicle of the scene `two-lasers`, whose motion goes up to 1 Hz. Ties are good to 0.05 mm
+    # each and there are thousands: what pieces cannot follow must stay far below.
+    unrest = Unrest(speed=0.15, sway=6e-3, heave=8e-3, attitude=np.deg2rad(0.7), period=5.0)
+    way = drive(unrest, np.array([0.1, 0, 0]), np.zeros(3), DURATION, seed=seed)
+    way = way.at(np.arange(0, DURATION, 0.04))
+    start = first_path(Navigation(NavigationAccuracy()), 0.0, DURATION, SETTINGS.knot_step, way)
+    found = fit_path(start, way).as_trajectory(way.times)
+    beside = np.tile([0.2, 0.25, 0.8], (len(way.times), 1))
+    off = found.transform(beside, way.times) - way.transform(beside, way.times)
+    assert np.sqrt(np.mean(off**2)) < 0.01e-3
+
+
+@pytest.mark.parametrize("late", [-0.2, 0.0, 0.2])
+def test_a_place_that_was_measured_once_holds_whatever_the_clock(late):
+    accuracy = NavigationAccuracy(
+        velocity_noise=3e-3, attitude_noise=2e-3, depth_noise=5e-3, position_noise=0.03,
+        clock_offset=0.5,
+    )  # fmt: skip
+    times = np.arange(0, DURATION, 0.1)
+    still = np.zeros((len(times), 3))
+    log = Navigation(
+        accuracy,
+        attitude=Readings(times, still),
+        velocity=Readings(times, still + np.array([0.1, 0, 0])),
+        depth=Readings(times, still[:, :1]),
+        position=Readings(times[:1], np.array([[0.4, 0.7, 0.0]])),
+    )
+    path = first_path(log, 0.0, DURATION, SETTINGS.knot_step)
+    layout = Layout.of([path], [0])
+    logs, errors = (Log(0, log, layout, 0.0),), np.zeros(layout.count)
+    errors[layout.shared(0, "clock_offset")] = late
+    state = improve(State((path,), errors), logs, [], SETTINGS, steps=4)
+    draws = 200
+    drawn = draw_errors(state, logs, [], SETTINGS, count=draws)[: layout.sizes[0]]
+    begin = state.paths[0].as_trajectory(times[:2], drawn.reshape(-1, 6, draws) / np.sqrt(draws))
+    sigma = np.linalg.norm(begin.errors[0, :2], axis=1)
+    # The fix, and 0.5 s of the clock at 0.1 m/s along the way; 200 draws know each to 5 %.
+    np.testing.assert_allclose(sigma, [np.hypot(0.03, 0.05), 0.03], rtol=0.2)
+    assert np.abs(begin.positions[0, 1] - 0.7) < 1e-3
