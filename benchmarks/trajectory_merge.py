@@ -1,4 +1,4 @@
-"""Lay passes on one another as `murkscan merge` does: rigidly first, then along their ways."""
+"""Lay passes on one another as `murkscan merge` does, and judge what it states of them."""
 
 from dataclasses import replace
 
@@ -6,25 +6,8 @@ import numpy as np
 
 from murkscan.errors import Degenerate
 from murkscan.geometry.alignment import align_clouds
-from murkscan.motion.adjust import adjust_passes
 from murkscan.types.cloud import PointCloud
 from murkscan.types.pose import Pose
-
-
-def scan_alone(passes):
-    """Give world_from_vehicle of each pass as `murkscan scan` does: by its log and its own sheets.
-
-    Returns:
-        Trajectories by the logs alone, and as corrected by what each pass saw twice.
-    """
-    alone = [adjust_passes([one]) for one in passes]
-    return [
-        [
-            getattr(found, way)[0].as_trajectory(one.times)
-            for found, one in zip(alone, passes, strict=True)
-        ]
-        for way in ("as_logged", "paths")
-    ]
 
 
 def register(passes, ways):
@@ -80,3 +63,28 @@ def as_cloud(one, way):
         laser=np.zeros(len(points), np.uint8),
         branch=np.zeros(len(points), np.uint8),
     )
+
+
+def length_pulls(dive, adjusted):
+    """Divide the error of each pass's length by its stated deviation."""
+    pulls = []
+    for number, (one, truth) in enumerate(zip(dive.passes, dive.truths, strict=True)):
+        trajectory = adjusted.trajectory(number, one.times)
+        middle = np.flatnonzero(truth.line == np.median(truth.line).astype(int))[[0, -1]]
+        times = one.times[truth.profile[middle]]
+        ends = trajectory.transform(truth.own[middle], times)
+        between = ends[1] - ends[0]
+        shifts = trajectory.shifts(ends, times)
+        along = between / np.linalg.norm(between)
+        sigma = np.linalg.norm(along @ (shifts[1] - shifts[0]))
+        true = np.linalg.norm(np.diff(truth.world[middle], axis=0))
+        pulls.append(float((np.linalg.norm(between) - true) / sigma))
+    return pulls
+
+
+def clock_pull(adjusted, late):
+    """Give how far the clock was found off what it is [ms], and that over what is stated."""
+    if not late:
+        return None
+    found, sigma = adjusted.instrument_errors(0)["clock_offset"]
+    return 1e3 * (found + late), (found + late) / sigma

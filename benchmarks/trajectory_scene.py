@@ -1,6 +1,7 @@
 """Profiles of a hull from a vehicle's true way, made from geometry alone, and what its log says."""
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from harness import DATA
@@ -9,6 +10,8 @@ from scipy.ndimage import gaussian_filter, map_coordinates, spline_filter
 from scipy.spatial.transform import Rotation
 
 from murkscan.motion.adjust import Pass
+from murkscan.motion.measured import CLOCK
+from murkscan.simulate.vehicle import Unrest, drive
 from murkscan.types.navigation import Navigation, NavigationAccuracy, Readings
 
 RATE = 25.0
@@ -24,6 +27,7 @@ NOISE = 0.15e-3
 LOG_RATE = 10.0
 TURN = 15.0
 """Time from one pass to the next [s]."""
+WAVES = Unrest(0.15, 6e-3, 8e-3, np.deg2rad(0.7), 5.0)
 BASELINE = 0.2
 """From the camera to the lasers, along the way [m]."""
 
@@ -44,9 +48,9 @@ class Case:
     stand_off_swing: float = 0.0
     """How far the stand-off swings [m]."""
     motion: str = "made"
-    """`made`, or the name of a real recording."""
+    """`made`, `waves`, or the name of a real recording."""
     clock: float = 0.0
-    """How much too late the log's stamps are [s]."""
+    """How much too late the log's stamps are [s]; unless 0, nothing is stated of its clock."""
     tilt: float = 1.0
     """Swing of roll, pitch and heading [deg]."""
 
@@ -159,10 +163,18 @@ def make_way(case, number, start, random):
         [wander(times, random, shortest=3, longest=12) for _ in range(3)], axis=1
     )
     if case.motion != "made":
-        shifts, tilt = real_motion(case.motion, times, random)
+        move = ride_waves if case.motion == "waves" else partial(real_motion, case.motion)
+        shifts, tilt = move(times, random)
         positions = start + shifts @ np.stack([forward, side, [0, 0, 1]])
     rotations = Rotation.from_rotvec([0, 0, heading]) * Rotation.from_rotvec(tilt)
     return Way(times, positions, rotations)
+
+
+def ride_waves(times, random):
+    """Ride waves as the vehicle of the scene `two-lasers` does, up to 1 Hz; z is down."""
+    seed = int(random.integers(1 << 30))
+    way = drive(WAVES, np.array([SPEED, 0, 0]), np.zeros(3), times[-1], seed=seed).at(times)
+    return way.positions, Rotation.from_quat(way.quaternions, scalar_first=True).as_rotvec()
 
 
 def real_motion(name, times, random):
@@ -273,7 +285,7 @@ def dive_errors(case, random):
 
 def read_log(case, way, errors, number, duration, random):
     """Measure a way as the vehicle's instruments do; a fix of its place only at the start."""
-    accuracy = LOGS[case.log]
+    accuracy = replace(LOGS[case.log], clock_offset=CLOCK if case.clock else 0.0)
     start, rotation = way.at(np.array([0.0]))
     fix = Readings(np.array([0.0]), start + accuracy.position_noise * random.normal(size=(1, 3)))
     if case.log == "c":
