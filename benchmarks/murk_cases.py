@@ -140,7 +140,7 @@ class Part:
                 trace_recording(folder, self.seed)
             else:
                 simulate_recording(self.scene(), folder)
-        return Recorded(folder, is_interlaced=self.case not in (*HD, *HD_ROWS, TRACED))
+        return Recorded(folder, self.case != TRACED and self.scene().sensor.interlaced)
 
 
 @lru_cache(maxsize=2)

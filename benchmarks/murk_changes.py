@@ -207,6 +207,15 @@ def lit(ratio: float, contrast: float) -> Change:
     return change
 
 
+def in_colour(scene: Scene) -> Scene:
+    """Film with a colour camera: a green laser, and a lamp that is white but for the water."""
+    return replace(
+        scene,
+        light=replace(scene.light, colour=(0.6, 1.0, 0.8)),
+        sensor=replace(scene.sensor, colour="rggb", interlaced=False),
+    )
+
+
 def with_processing(**changed: object) -> Change:
     return lambda scene: replace(scene, processing=replace(scene.processing, **changed))
 

@@ -74,10 +74,11 @@ def test_the_grey_levels_are_part_of_what_a_recording_is(tmp_path, write_folder)
     assert opened(tmp_path, write_folder, ambient=0.8, noise=1.5).colour == recording.colour
 
 
-def test_a_video_and_its_chapters_are_seen_in_one_colour(tmp_path, write_video):
+@pytest.mark.parametrize(("codec", "kept"), [("ffv1", "bgr0"), ("libx264", "yuv420p")])
+def test_a_video_and_its_chapters_are_seen_in_one_colour(tmp_path, write_video, codec, kept):
     pictures = [lit_room(frame, ambient=0.8, noise=1.5) for frame in range(COUNT)]
     whole = [
-        write_video(tmp_path / f"dive-{k}.mkv", pictures, given="rgb24", kept="bgr0")
+        write_video(tmp_path / f"dive-{k}.mkv", pictures, codec=codec, given="rgb24", kept=kept)
         for k in (1, 2)
     ]
     assert open_recording(whole[0]).colour.is_contrast

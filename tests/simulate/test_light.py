@@ -138,6 +138,21 @@ def test_a_mosaic_sees_the_laser_in_its_green_pixels(colour):
     assert green > 2 * blue > 2 * red > 0
 
 
+def test_a_mosaic_sees_daylight_in_its_own_colour_and_mono_as_before():
+    from murkscan.simulate import as_colour
+
+    light = Light(ambient=50.0, colour=(0.6, 1.0, 0.8), is_on=False)
+    sensor = Sensor(peak_grey=20.0, colour="rggb", read_noise=0.5)
+    image = Simulator.of(standing(wall(0.6), sensor=sensor, light=light)).draw_frame(0).frame.image
+    red, green, blue = (float(as_colour(image, "rggb")[:, :, k].mean()) - 4 for k in range(3))
+    assert (red / green, blue / green) == pytest.approx((0.6, 0.8), abs=0.02)
+    mono = [
+        Simulator.of(standing(wall(0.6), light=one)).draw_light(0).ambient
+        for one in (light, replace(light, colour=None))
+    ]
+    np.testing.assert_array_equal(*mono)
+
+
 def test_deep_pictures_keep_their_depth():
     sensor = Sensor(peak_grey=3000.0, bits=12, full_well=1e5)
     image = Simulator.of(standing(wall(0.6), sensor=sensor)).draw_frame(0).frame.image

@@ -60,7 +60,8 @@ class LaserColour:
     @property
     def is_luma(self) -> bool:
         """Tell whether the luma of YUV video serves as well: it holds most of a green laser."""
-        return not self.is_contrast and _GREEN[0] <= self.wavelength <= _GREEN[1]
+        is_green = _GREEN[0] <= self.wavelength <= _GREEN[1]
+        return is_green and self == LaserColour.mean(self.wavelength)
 
     def grey(self, image: Shaped[np.ndarray, "h w *rgb"]) -> Image:
         """Give a picture's grey levels, of the same bit depth, rounded.

@@ -142,6 +142,8 @@ def _shared_factor(levels: Scalars, usual: Scalars) -> float:
         return float("nan")
     thirds = np.array_split(known[np.argsort(usual[known])], 3)
     factors = [float(np.median(levels[third] / usual[third])) for third in thirds]
+    if min(factors) <= 0:  # no glow at all: the laser was off, which is no exposure
+        return float("nan")
     return max(1.0, min(factors)) * min(1.0, max(factors))
 
 

@@ -54,6 +54,9 @@ class Light:
     """Contrast of the stripe's speckle: its standard deviation as a share of its mean."""
     is_on: bool = True
     """Whether the lasers shine; exposure is set as if they did."""
+    colour: tuple[float, float, float] | None = None
+    """Red, green and blue of white paper in daylight or lamplight, as a colour camera sees it,
+    green being as strong as stated; None: all light is of the laser's colour."""
 
     @property
     def shows_objects(self) -> bool:
@@ -74,6 +77,10 @@ class Light:
         if not 0 <= self.ambient <= 1e6:
             raise InputError(
                 f"light.ambient_w_m2 must lie between 0 and 1e6, got {self.ambient:g}."
+            )
+        if self.colour is not None and not all(0 < part <= 100 for part in self.colour):
+            raise InputError(
+                f"light.colour needs red, green and blue above 0, got {list(self.colour)}."
             )
         if not 0 <= self.speckle <= 1:
             raise InputError(f"light.speckle must lie between 0 and 1, got {self.speckle:g}.")

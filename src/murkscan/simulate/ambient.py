@@ -15,7 +15,7 @@ from ..types.rays import Rays
 from .lit_line import to_world
 from .range_image import cast_picture
 from .scene import Scene
-from .sensor import blur_lens
+from .sensor import blur_lens, compare_colours
 
 _CONTRAST = 0.03
 """Share of the brightest by which neighbouring pixels may differ before they are averaged."""
@@ -50,7 +50,7 @@ def draw_ambient(scene: Scene, number: int) -> Picture:
     sensor = scene.sensor
     blurs = math.hypot(sensor.psf, sensor.composite), math.hypot(sensor.psf, sensor.field_blur)
     picture += _veil_of_lamp(scene, pose, rays, hits, (height, width))
-    return blur_lens(picture, *blurs)
+    return blur_lens(picture, *blurs) * compare_colours(sensor, scene.light, scene.rig.camera)
 
 
 def _rays_of(scene: Scene, pose: Pose, pixels: Pixels) -> Rays:

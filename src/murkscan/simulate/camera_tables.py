@@ -43,6 +43,7 @@ class LightTable(Table):
     streaks_percent: FiniteFloat = 0.0
     speckle: FiniteFloat = 0.0
     laser_on: bool = True
+    colour: tuple[FiniteFloat, FiniteFloat, FiniteFloat] | None = None
 
     def as_light(self) -> Light:
         """Give the light."""
@@ -55,6 +56,7 @@ class LightTable(Table):
             self.streaks_percent / 100,
             self.speckle,
             self.laser_on,
+            self.colour,
         )
 
 

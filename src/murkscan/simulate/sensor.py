@@ -1,10 +1,12 @@
 """From electrons to pictures: lens, noise, rounding, colour filters."""
 
 import math
+from collections.abc import Mapping
 
 import cv2
 import numpy as np
 
+from ..optics.beam import Light
 from ..optics.sensor import Colour, Picture, Sensor, vignetting
 from ..types.arrays import Image
 from ..types.camera import Camera
@@ -22,9 +24,26 @@ def sensitivity(sensor: Sensor, camera: Camera) -> Picture:
         pixels = np.stack([u.ravel(), v.ravel()], axis=1).astype(float)
         share = vignetting(camera, pixels).reshape(height, width)
     if sensor.colour != "mono":
-        tile = np.array([_RESPONSE[letter] for letter in sensor.colour]).reshape(2, 2)
-        share *= np.tile(tile, (height // 2 + 1, width // 2 + 1))[:height, :width]
+        share *= _through_filters(sensor.colour, _RESPONSE, camera.size)
     return share.astype(np.float32)
+
+
+def compare_colours(sensor: Sensor, light: Light, camera: Camera) -> Picture | float:
+    """Give how much more of daylight and lamps each pixel sees than of the laser's light."""
+    if sensor.colour == "mono" or light.colour is None:
+        return 1.0
+    green = light.colour[1]
+    seen = {letter: part / green for letter, part in zip("rgb", light.colour, strict=True)}
+    ratio = {letter: seen[letter] / _RESPONSE[letter] for letter in "rgb"}
+    return _through_filters(sensor.colour, ratio, camera.size).astype(np.float32)
+
+
+def _through_filters(
+    colour: Colour, passed: Mapping[str, float], size: tuple[int, int]
+) -> np.ndarray:
+    width, height = size
+    tile = np.array([passed[letter] for letter in colour]).reshape(2, 2)
+    return np.tile(tile, (height // 2 + 1, width // 2 + 1))[:height, :width]
 
 
 def blur_lens(picture: Picture, sigma_u: float, sigma_v: float) -> Picture:
