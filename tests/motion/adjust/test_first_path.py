@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
+from murkscan.motion.adjust.draws import draw_errors
 from murkscan.motion.adjust.first_path import first_path, fit_path
 from murkscan.motion.adjust.log_terms import Log
 from murkscan.motion.adjust.settings import AdjustSettings
-from murkscan.motion.adjust.solve import State, draw_errors, improve
+from murkscan.motion.adjust.solve import State, improve
 from murkscan.motion.adjust.unknowns import Layout
 from murkscan.simulate.vehicle import Unrest, drive
 from murkscan.types.navigation import Navigation, NavigationAccuracy, Readings
@@ -28,6 +29,27 @@ def test_pieces_follow_a_small_vehicle_in_waves(seed):
     beside = np.tile([0.2, 0.25, 0.8], (len(way.times), 1))
     off = found.transform(beside, way.times) - way.transform(beside, way.times)
     assert np.sqrt(np.mean(off**2)) < 0.01e-3
+
+
+def test_a_way_begins_where_it_is_laid_if_its_only_fix_was_taken_before():
+    times = np.arange(0, DURATION, 0.1)
+    still = np.zeros((len(times), 3))
+    log = Navigation(
+        NavigationAccuracy(velocity_noise=3e-3, attitude_noise=2e-3, position_noise=0.03),
+        attitude=Readings(times, still),
+        velocity=Readings(times, still),
+        position=Readings(np.array([-60.0]), still[:1]),
+    )
+    path = first_path(log, 0.0, DURATION, SETTINGS.knot_step)
+    layout = Layout.of([path], [0])
+    origin, draws = np.array([1.0, 2.0, 3.0]), 200
+    logs = (Log(0, log, layout, 0.0, origin, 0.2),)
+    state = improve(State((path,), np.zeros(layout.count)), logs, [], SETTINGS, steps=4)
+    drawn = draw_errors(state, logs, [], SETTINGS, count=draws)[: layout.sizes[0]]
+    begin = state.paths[0].as_trajectory(times[:2], drawn.reshape(-1, 6, draws) / np.sqrt(draws))
+    np.testing.assert_allclose(begin.positions[0], origin, atol=1e-6)
+    # 200 draws know each deviation to 5 %.
+    np.testing.assert_allclose(np.linalg.norm(begin.errors[0, :3], axis=1), 0.2, rtol=0.2)
 
 
 @pytest.mark.parametrize("late", [-0.2, 0.0, 0.2])

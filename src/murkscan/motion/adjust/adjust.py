@@ -15,6 +15,7 @@ from ...errors import InputError
 from ...types.arrays import Mask, Scalars
 from ...types.trajectory import Trajectory
 from .checks import Seams, compare_passes, find_blind
+from .draws import draw_errors
 from .first_path import first_path, fit_path
 from .legs import Leg, Pass, cut_legs, make_facets
 from .log_terms import Log
@@ -22,7 +23,7 @@ from .pairs import make_side, pair_facets
 from .path import WIDTH, Path
 from .rough import MORE, count_tiles, lay_roughly, may_meet
 from .settings import AdjustSettings
-from .solve import State, draw_errors, improve
+from .solve import State, improve
 from .ties import Ties
 from .unknowns import Layout
 

@@ -166,14 +166,27 @@ class Log:
             drifting = self._plain(turns, slopes_of_turn(poses, change), poses, 1.0, [])
             wander = settings.attitude_wander
             parts.append(_wandering(drifting, len(times), wander, settings.wander_time))
-        if log.position is None or log.accuracy.position_noise is None:
-            knows_depth = log.depth is not None and log.accuracy.depth_noise is not None
+        accuracy = log.accuracy
+        if not self._holds(log.position, accuracy.position_noise, path, errors):
+            knows_depth = self._holds(log.depth, accuracy.depth_noise, path, errors)
             place = Place((0, 1) if knows_depth else (0, 1, 2))
             poses = path.at(np.array([path.knots.first]))
             off = place.predict(path, poses) - self.origin[list(place.axes)]
             sigma = self.origin_sigma
             parts.append(self._plain(off, place.slopes(path, poses), poses, sigma, []))
         return parts
+
+    def _holds(
+        self,
+        readings: Readings | None,
+        sigma: float | None,
+        path: Path,
+        errors: Float[np.ndarray, " u"],
+    ) -> bool:
+        """Tell whether an instrument has measured the way: a fix may be of before it began."""
+        if readings is None or sigma is None:
+            return False
+        return bool(_within(self._own_times(readings.times, path, errors), path).any())
 
     def _plain(
         self,

@@ -9,10 +9,11 @@ from jaxtyping import Float
 
 from ...types.arrays import Scalars
 from .doubt import Doubt
+from .draws import draw_errors
 from .legs import Facets, Leg, leg_direction, make_facets
 from .log_terms import Log
 from .settings import AdjustSettings
-from .solve import State, draw_errors, improve
+from .solve import State, improve
 from .ties import Ties, as_seen
 from .tiles import Relief, make_relief, tie_tiles
 

@@ -1,14 +1,14 @@
 """Sparse Gauss-Newton over all unknowns of all passes."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
 from scipy import sparse
 from scipy.sparse.linalg import SuperLU, splu
 
-from ...types.arrays import Indices, Scalars
+from ...types.arrays import Scalars
 from .log_terms import Log, prior_equations
 from .path import Path
 from .settings import AdjustSettings
@@ -26,10 +26,6 @@ _TRIES = 6
 _GAIN = 0.05
 """Gain in the sum of squares below which a step was the last: one standard deviation of any
 unknown is worth 1."""
-_TOGETHER, _TOGETHER_TIME = 0.02, 0.2
-"""Size of a tile whose ties err together [m], [s]: planes share points over three cells of 5 mm."""
-_LEAST_STIFF = 0.2
-"""Share of their weights that ties hold at least: with less, most of them are no normal noise."""
 _RIDGE = 1e-13
 """Share of its diagonal by which a matrix is made regular: of the step, not of the state."""
 
@@ -203,81 +199,3 @@ def _linearise_all(
     cost += _ROBUST**2 * float((square / (1 + square)).sum())
     weights = (1 + square) ** -2 / sigma**2
     return join(of_log, sum_ties(linear, weights), logs[0].layout), cost
-
-
-def _stiffness(ties: Ties, weights: Scalars) -> float:
-    """Compute by how much less than their weights ties hold a state, 1 for ties that all fit.
-
-    A robust force w·r, w = (1 + u)⁻² with u = (r / 3s)², grows ever slower with r: what holds the
-    state is its slope, (1 - 3u)·(1 + u)⁻³, for normal residuals three quarters of w.
-
-    References:
-        Huber, Robust statistics, 1981, section 6.3: (E ψ')⁻¹ E ψ² (E ψ')⁻¹.
-    """
-    share = weights * ties.variance
-    keep = np.sqrt(share / share.max(initial=1e-300))
-    slope = keep**2 * (4 * keep - 3)
-    held = float((slope / ties.variance).sum() / (keep**2 / ties.variance).sum())
-    return float(np.clip(held, _LEAST_STIFF, 1.0))
-
-
-def _blocks(ties: Ties) -> Indices:
-    """Number the tile of the surface in which each tie lies: neighbours err together."""
-    place = np.floor(ties.point_a / _TOGETHER).astype(np.int64)
-    key = np.column_stack([np.floor(ties.time_a / _TOGETHER_TIME).astype(np.int64), place])
-    return np.asarray(np.unique(key, axis=0, return_inverse=True)[1]).ravel()
-
-
-def draw_errors(
-    state: State,
-    logs: Sequence[Log],
-    groups: Sequence[Ties],
-    settings: AdjustSettings,
-    *,
-    count: int,
-    as_seen: bool = False,
-) -> Float[np.ndarray, "u m"]:
-    """Draw errors that the state may have; one column a draw, the same ones each time.
-
-    With noise of variance 1 in place of the residuals of whitened equations J, the solution has
-    the covariance of the state: (JᵀJ)⁻¹Jᵀε. Of logs, ε is white, as their accuracy states. Ties
-    that are `as_seen` err as their residuals do, with one random sign a tile: neighbours err
-    together, since their planes share points, and normal equations alone would not know. Tiles are
-    far more than unknowns: residuals of a block that settles some unknowns alone add up to nothing.
-
-    Args:
-        state: Where everything stands.
-        logs: The logs.
-        groups: The ties.
-        settings: As for the adjustment.
-        count: How many draws.
-        as_seen: Whether ties err as their residuals show, or by their stated variance.
-
-    References:
-        Liang and Zeger, Longitudinal data analysis using generalized linear models, Biometrika
-        73(1), 1986, for the sandwich; Cameron, Gelbach and Miller, Bootstrap-based improvements for
-        inference with clustered errors, Review of Economics and Statistics 90(3), 2008, for signs.
-    """
-    random = np.random.default_rng(0)
-    layout = logs[0].layout
-    of_log = log_equations(state, logs, settings)
-    forces = of_log.jacobian.T @ random.normal(size=(len(of_log.residuals), count))
-    there = [ties for ties in groups if len(ties)]
-    blocks = [_blocks(ties) for ties in there]
-    # Residuals are smaller than errors by what was fitted to them (MacKinnon and White, 1985: HC1).
-    num = sum(int(block.max()) + 1 for block in blocks)
-    fitted = np.sqrt(num / max(num - layout.num_of_paths, num / 4)) if num else 1.0
-    parts = []
-    for ties, block in zip(there, blocks, strict=True):
-        linear = linearise(ties, state.paths)
-        weights, _ = robust_weights(linear, ties, least=1.0)
-        parts.append(sum_ties(linear, _stiffness(ties, weights) * weights))
-        signs = fitted * random.choice([-1.0, 1.0], (int(block.max()) + 1, count))
-        for k in range(count):
-            if as_seen:
-                noise = linear.residuals * signs[block, k]
-            else:
-                noise = random.normal(size=len(ties)) / np.sqrt(weights)
-            drawn = sum_ties(replace(linear, residuals=noise), weights, with_matrix=False)
-            np.add.at(forces[:, k], drawn.places.ravel(), drawn.vector.ravel())
-    return join(of_log, TieSums.stack(parts) if parts else None, layout).draw(forces)

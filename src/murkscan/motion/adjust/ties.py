@@ -58,6 +58,12 @@ def as_seen(number: Indices, times: Scalars, points: Points, paths: Sequence[Pat
     return np.einsum("nji,nj->ni", at.rotations, points - at.positions)
 
 
+def as_placed(number: Indices, times: Scalars, points: Points, paths: Sequence[Path]) -> Points:
+    """Carry points in the frame of the vehicle that saw them into the world [m]."""
+    at, _ = _moments(number, times, paths)
+    return np.einsum("nij,nj->ni", at.rotations, points) + at.positions
+
+
 @dataclass(frozen=True, eq=False)
 class LinearTies:
     """Ties where the paths lie now, and how each residual changes with its control values."""
