@@ -141,7 +141,16 @@ def adjust_passes(
         rounds = settings.fine_rounds if not within or len(passes) == 1 else settings.inner_rounds
         tiles: list[Ties] = []
         for cycle in range(settings.cycles):
-            rough, found = lay_roughly(state, logs, legs, known, settings, tell, within=within)
+            rough, found = lay_roughly(
+                state,
+                logs,
+                legs,
+                known,
+                settings,
+                tell,
+                within=within,
+                before=count_tiles(tiles),
+            )
             if cycle and count_tiles(found) <= MORE * count_tiles(tiles):
                 break
             tiles = found

@@ -32,23 +32,29 @@ def lay_roughly(
     tell: Callable[[str], None],
     *,
     within: bool,
+    before: int,
 ) -> tuple[State, list[Ties]]:
-    """Tie tiles within passes, or between them, beside the ties that are known."""
+    """Tie tiles within passes, or between them, beside the ties that are known.
+
+    It ends where no more tiles are found than in the round before; `before` is the count of tiles
+    that were found when the paths lay elsewhere.
+    """
     found: list[Ties] = []
     for _ in range(settings.rounds):
         reliefs = [make_relief(make_facets(leg, state.paths[leg.number])) for leg in legs]
         errors = draw_errors(state, logs, [*known, *found], settings, count=_DRAWS)
-        count = count_tiles(found)
         found = [
             carry_to_vehicles(ties, state)
             for i, j in combinations(range(len(legs)), 2)
             if _are_to_meet(legs[i], legs[j], within=within)
             for ties, _ in tie_legs(reliefs[i], reliefs[j], state, errors, settings, logs)
         ]
+        count = count_tiles(found)
+        tell(f"{count} tiles {'within' if within else 'between'} passes")
         state = improve(state, logs, [*known, *found], settings, steps=6)
-        tell(f"{count_tiles(found)} tiles {'within' if within else 'between'} passes")
-        if count_tiles(found) <= MORE * count:
+        if count <= MORE * before:
             break
+        before = count
     return state, found
 
 

@@ -114,19 +114,19 @@ def equations_of_path(
         sigma: Standard deviation of the readings.
     """
     count, size = residuals.shape
-    row = np.arange(count * size).reshape(count, 1, size, 1)
-    column = start + WIDTH * (first[:, None] + np.arange(4))[:, :, None, None] + np.arange(WIDTH)
-    rows = [np.broadcast_to(row, slopes.shape).ravel()]
-    columns = [np.broadcast_to(column, slopes.shape).ravel()]
-    values = [slopes.ravel()]
-    for place, change in errors:
-        rows.append(row.ravel())
-        columns.append(np.full(count * size, place))
-        values.append(change.ravel())
-    scale = 1 / np.broadcast_to(np.asarray(sigma, float).reshape(-1, 1), residuals.shape).ravel()
-    entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
-    jacobian = sparse.coo_matrix(entries, shape=(count * size, width)).tocsr()
-    return Equations(residuals.ravel() * scale, (sparse.diags(scale) @ jacobian).tocsr())
+    near = start + WIDTH * first[:, None] + np.arange(4 * WIDTH)
+    columns = np.empty((count, size, 4 * WIDTH + len(errors)), np.int32)
+    values = np.empty(columns.shape)
+    columns[..., : 4 * WIDTH] = near[:, None]
+    values[..., : 4 * WIDTH] = slopes.transpose(0, 2, 1, 3).reshape(count, size, -1)
+    for k, (place, change) in enumerate(errors):
+        columns[..., 4 * WIDTH + k], values[..., 4 * WIDTH + k] = place, change
+    scale = 1 / np.broadcast_to(np.asarray(sigma, float).reshape(-1, 1), residuals.shape)
+    values *= scale[..., None]
+    ends = columns.shape[2] * np.arange(count * size + 1, dtype=np.int32)
+    entries = (values.ravel(), columns.ravel(), ends)
+    jacobian = sparse.csr_matrix(entries, shape=(count * size, width))
+    return Equations((residuals * scale).ravel(), jacobian)
 
 
 def slopes_of_turn(
