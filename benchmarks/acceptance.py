@@ -5,7 +5,19 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from acceptance_scene import ACROSS, APART, BIN, DEPTH, HALF, RADIUS, RATE_HZ, STEP, Case, run
+from acceptance_scene import (
+    ACROSS,
+    APART,
+    BIN,
+    DEPTH,
+    HALF,
+    RADIUS,
+    RATE_HZ,
+    STEP,
+    Case,
+    measure_case,
+    scan_case,
+)
 from harness import Figure, tell
 from kept import Kept, make_in_pieces
 
@@ -38,7 +50,7 @@ def scan_all(kept: Kept) -> dict[Case, Result]:
     found, left = dict[Case, Result](), 0
     for case in dict.fromkeys(list_cases()):
         try:
-            found[case] = kept.take(case.name, partial(scan_one, case))
+            found[case] = measure_one(case, kept)
         except TimeoutError:
             left += 1
     if left:
@@ -46,10 +58,10 @@ def scan_all(kept: Kept) -> dict[Case, Result]:
     return found
 
 
-def scan_one(case: Case) -> Result:
-    """Scan one case; of one that is refused, say why."""
+def measure_one(case: Case, kept: Kept) -> Result:
+    """Scan one case, unless its scan is kept, and measure it; of one that is refused, say why."""
     try:
-        return run(case)
+        return measure_case(case, kept.take_scan(case.name, partial(scan_case, case)))
     except MurkscanError as error:
         return {"refused": str(error)}
 

@@ -3,8 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-import tomlkit
-from measure_scene import as_plain, crop, scan
+from measure_scene import as_plain, build_scene, crop, scan
 
 from murkscan.measure import (
     Ball,
@@ -15,7 +14,9 @@ from murkscan.measure import (
     measure_step,
     trust_plane,
 )
-from murkscan.simulate import Scene, parse_scene, read_scene, simulate_frames
+from murkscan.optics import equivalent_plane, refractive_index
+from murkscan.simulate import Scene, simulate_frames
+from murkscan.types.rig import Rig
 
 RADIUS, APART, STEP, TREAD = 40.0, 400.0, 20.0, 45.0
 """Sizes of the artefacts [mm]."""
@@ -72,51 +73,54 @@ class Layout:
         """The middle of the first tread's outer edge."""
         return self.shift + np.array([75, -TREAD, 0])
 
+    def as_tables(self) -> list[dict[str, object]]:
+        """Write all of it as a scene file has it."""
+        ball = {"mesh": "sphere", "radius_mm": RADIUS}
+        return [
+            *({**ball, "position_mm": at.tolist()} for at in self.balls),
+            {
+                "mesh": "plane", "width_mm": 130.0, "height_mm": 90.0,
+                "position_mm": self.plate.tolist(), "rotation_deg": self.turn.tolist(),
+            },
+            {
+                "mesh": "stairs", "width_mm": 130.0, "tread_mm": TREAD, "heights_mm": [0.0, STEP],
+                "position_mm": self.stairs.tolist(),
+            },
+        ]  # fmt: skip
+
 
 def make_scene(case: Case) -> Scene:
     """Make the scene, of whose pictures only the rows about the stripe are drawn."""
     suffix = "" if case.rig == "PAL" else "-hd"
-    text, label, folder = read_scene(f"sphere-c{case.attenuation:g}{suffix}")
-    document, layout = tomlkit.parse(text), Layout.of(case.seed)
-    document["seed"] = case.seed
-    ball = {"mesh": "sphere", "radius_mm": RADIUS}
-    document["object"] = [
-        *({**ball, "position_mm": at.tolist()} for at in layout.balls),
-        {
-            "mesh": "plane", "width_mm": 130.0, "height_mm": 90.0,
-            "position_mm": layout.plate.tolist(), "rotation_deg": layout.turn.tolist(),
-        },
-        {
-            "mesh": "stairs", "width_mm": 130.0, "tread_mm": TREAD, "heights_mm": [0.0, STEP],
-            "position_mm": layout.stairs.tolist(),
-        },
-    ]  # fmt: skip
-    rate = RATE_HZ[case.rig]
-    document["motion"].update(
-        frames=round(ACROSS / case.speed * rate),
-        frame_rate_hz=rate,
-        speed_mm_s=case.speed,
-    )
-    scene = parse_scene(tomlkit.dumps(document), label, folder)
-    middle = sheet_crosses(scene)
-    document["motion"]["start_mm"] = [0.0, 200.0 - ACROSS / 2 - 1e3 * middle, 0.0]
-    return crop(parse_scene(tomlkit.dumps(document), label, folder))
+    layout, rate = Layout.of(case.seed), RATE_HZ[case.rig]
+    motion = {
+        "frames": round(ACROSS / case.speed * rate),
+        "frame_rate_hz": rate,
+        "speed_mm_s": case.speed,
+    }
+    base = f"sphere-c{case.attenuation:g}{suffix}"
+    scene = build_scene(base, seed=case.seed, objects=layout.as_tables(), motion=motion)
+    start = [0.0, 200.0 - ACROSS / 2 - 1e3 * sheet_crosses(scene.rig), 0.0]
+    motion |= {"start_mm": start}
+    return crop(build_scene(base, seed=case.seed, objects=layout.as_tables(), motion=motion))
 
 
-def sheet_crosses(scene: Scene) -> float:
+def sheet_crosses(rig: Rig) -> float:
     """Give y of the sheet below the camera, at the artefacts' distance [m]."""
-    from murkscan.optics import equivalent_plane, refractive_index
-
-    rig = scene.rig
     plane = equivalent_plane(rig.lasers[0], refractive_index(rig.water, rig.wavelength))
     return float(-(plane.distance + plane.normal[2] * DEPTH / 1e3) / plane.normal[1])
 
 
-def run(case: Case) -> dict[str, dict[str, object]]:
-    """Scan it, and give of each number: error, half width, and how distances are spread [mm]."""
+def scan_case(case: Case) -> Sample:
+    """Scan it."""
     scene = make_scene(case)
     frames = [simulated.frame for simulated in simulate_frames(scene, 0, len(scene))]
-    sample, layout = scan(scene, "murk", frames), Layout.of(case.seed)
+    return scan(scene, "murk", frames)
+
+
+def measure_case(case: Case, sample: Sample) -> dict[str, dict[str, object]]:
+    """Give of each number of a scan: error, half width, and how distances are spread [mm]."""
+    layout = Layout.of(case.seed)
     balls = [find_ball(sample, at / 1e3 + [2e-3, 3e-3, -0.03], RADIUS / 1e3) for at in layout.balls]
     found = {
         "probing size": as_plain(balls[0].diameter, 2 * RADIUS),

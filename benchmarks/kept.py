@@ -2,6 +2,8 @@
 
 import argparse
 import json
+import pickle
+import shutil
 import sys
 import tempfile
 import time
@@ -28,10 +30,41 @@ class Kept:
         """
         file = self.folder / f"{name}.json"
         if not file.exists():
-            if time.monotonic() > self.until:
-                raise TimeoutError
+            self._require_time()
             file.write_text(json.dumps(make()), "utf-8")
         return json.loads(file.read_text("utf-8"))
+
+    def take_scan(self, name: str, make: Callable[[], Made]) -> Made:
+        """Give the scan that is kept under a name, as it is, so that it can be measured anew.
+
+        Raises:
+            TimeoutError: It is not there, and the time is over.
+        """
+        file = self.folder / f"{name}.pickle"
+        if not file.exists():
+            self._require_time()
+            file.write_bytes(pickle.dumps(make()))
+        made: Made = pickle.loads(file.read_bytes())
+        return made
+
+    def take_folder(self, name: str, fill: Callable[[Path], object]) -> Path:
+        """Give the folder of a name, filled; one that was left half filled is filled anew.
+
+        Raises:
+            TimeoutError: It is not there, and the time is over.
+        """
+        folder = self.folder / name
+        if not (folder / "whole").exists():
+            self._require_time()
+            shutil.rmtree(folder, ignore_errors=True)
+            folder.mkdir(parents=True)
+            fill(folder)
+            (folder / "whole").touch()
+        return folder
+
+    def _require_time(self) -> None:
+        if time.monotonic() > self.until:
+            raise TimeoutError
 
 
 def make_in_pieces(work: Callable[[Kept], Made]) -> Made:

@@ -1,7 +1,6 @@
 """Balls, a pipe and a step in murky water: do the stated 95 % intervals hold the truth?"""
 
 import inspect
-import tempfile
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
@@ -37,11 +36,12 @@ def measure_all(kept: Kept) -> Cases:
     found: dict[Row, list[tuple[float, float]]] = {}
     for seed in range(SEEDS):
         for kind, size in TARGETS:
-            make = partial(measure_seed, kind, size, seed)
+            film_and_scan = partial(scan_seed, kind, size, seed)
             try:
-                rows = kept.take(f"{kind} {size:g} {seed}", make)
+                folder = kept.take_folder(f"{kind} {size:g} {seed}", film_and_scan)
             except TimeoutError:
                 continue
+            rows = measure_seed(Target.of(kind, size, seed), folder)
             for finder, passes, what, error, half_width in rows:
                 name = f"{kind} of {size:g} mm, {what}"
                 found.setdefault((finder, passes, name), []).append((error, half_width))
@@ -53,25 +53,20 @@ def _place(row: tuple[Row, object]) -> tuple[str, int, str]:
     return what, FINDERS.index(finder), passes
 
 
-def measure_seed(kind: str, size: float, seed: int) -> list[tuple[str, str, str, float, float]]:
-    """Film one target twice, scan it, merge the scans, and measure one pass and both."""
-    target, rows = Target.of(kind, size, seed), []
-    with tempfile.TemporaryDirectory() as name:
-        recordings = film(target, seed, Path(name))
-        for finder in FINDERS:
-            passes = [scan_pass(each, finder, each / finder) for each in recordings]
-            out = Path(name) / f"{finder} merged"
-            for words, errors in (
-                (ONE, _measure(target, passes[0].root)),
-                (MERGED, _merge(target, [one.root for one in passes], out)),
-            ):
-                rows += [(finder, words, *each) for each in errors]
-    return rows
+def scan_seed(kind: str, size: float, seed: int, folder: Path) -> None:
+    """Film one target twice, scan it with every finder, and merge its scans."""
+    recordings = film(Target.of(kind, size, seed), seed, folder)
+    for finder in FINDERS:
+        passes = [scan_pass(each, finder, each / finder).root for each in recordings]
+        merge_passes(passes, folder / finder)
 
 
-def _merge(target: Target, passes: list[Path], out: Path) -> Iterator[tuple[str, float, float]]:
-    merge_passes(passes, out)
-    return _measure(target, out)
+def measure_seed(target: Target, folder: Path) -> Iterator[tuple[str, str, str, float, float]]:
+    """Measure the target by one pass and by both."""
+    for finder in FINDERS:
+        for words, scanned in ((ONE, folder / "pass0" / finder), (MERGED, folder / finder)):
+            for each in _measure(target, scanned):
+                yield finder, words, *each
 
 
 def _measure(target: Target, folder: Path) -> Iterator[tuple[str, float, float]]:

@@ -20,9 +20,12 @@ from murkscan.measure import (
 )
 from murkscan.mesh import GridMesh
 from murkscan.motion import PoseLog
+from murkscan.optics.beam import Beam
+from murkscan.optics.scan_lines import SheetScanLines
 from murkscan.optics.seen_points import look_back
 from murkscan.project import Project
-from murkscan.simulate import Scene, Simulator, parse_scene, read_scene
+from murkscan.simulate import Scene, parse_scene, read_scene
+from murkscan.simulate.lit_line import cast_fan, find_lit_line
 from murkscan.survey.cloud import build_cloud
 from murkscan.survey.extract import extract_recording
 from murkscan.survey.motion import follow_motion
@@ -44,6 +47,9 @@ above and below the stripe."""
 ASIDE_MM = 40.0
 """By which the two passes lie to either side of the object; a scan of one pass is the first."""
 PASSES = 2
+WALL = {"mesh": "plane", "width_mm": 4000.0, "height_mm": 4000.0}
+BEHIND_MM = {"ball": 1200.0, "pipe": 1200.0, "step": 1000.0}
+"""Distance of the wall behind."""
 
 
 @dataclass(frozen=True)
@@ -110,21 +116,30 @@ class Target:
         return measure_step(*parts)
 
 
+def build_scene(
+    base: str, *, seed: int, objects: list[dict[str, object]], motion: dict[str, object]
+) -> Scene:
+    """Put other objects before a ready scene's rig, in its water, and move it otherwise."""
+    text, label, folder = read_scene(base)
+    document = tomlkit.parse(text)
+    document.update({"seed": seed, "object": objects})
+    document["motion"].update(motion)
+    return parse_scene(tomlkit.dumps(document), label, folder)
+
+
 def make_scene(target: Target, number: int, seed: int) -> Scene:
     """Film it from one side, in one of the passes, and the rows about the stripe only."""
-    text, label, folder = read_scene(f"{'stairs' if target.kind == 'step' else 'sphere'}-c1.5")
-    document = tomlkit.parse(text)
-    document["seed"] = PASSES * seed + number
-    for key in list(document["object"][0]):
-        del document["object"][0][key]
-    document["object"][0].update(target.as_table())
-    document["motion"].update(
-        frames=PICTURES,
-        frame_rate_hz=RATE_HZ,
-        speed_mm_s=TRAVEL_MM / PICTURES * RATE_HZ,
-        start_mm=[ASIDE_MM * (2 * number - 1), START_MM + 1.3 * number, 0.0],
+    scene = build_scene(
+        "sphere-c1.5",
+        seed=PASSES * seed + number,
+        objects=[target.as_table(), WALL | {"position_mm": [0.0, 0.0, BEHIND_MM[target.kind]]}],
+        motion={
+            "frames": PICTURES,
+            "frame_rate_hz": RATE_HZ,
+            "speed_mm_s": TRAVEL_MM / PICTURES * RATE_HZ,
+            "start_mm": [ASIDE_MM * (2 * number - 1), START_MM + 1.3 * number, 0.0],
+        },
     )
-    scene = parse_scene(tomlkit.dumps(document), label, folder)
     camera = scene.rig.camera
     u = camera.principal_point[0] - (camera.size[0] - COLUMNS) / 2
     camera = replace(
@@ -135,10 +150,13 @@ def make_scene(target: Target, number: int, seed: int) -> Scene:
 
 def crop(scene: Scene) -> Scene:
     """Keep the rows in which a stripe may lie, an even number of them from an even one on."""
-    simulator = Simulator.of(scene)
-    seen = np.linspace(0, len(scene) - 1, 5).astype(int)[1:4]
-    rows = np.concatenate([simulator.draw_frame(int(i)).stripe.pixels[:, 1] for i in seen])
-    camera = scene.rig.camera
+    laser, camera = scene.rig.lasers[0], scene.rig.camera
+    scan_lines = SheetScanLines(camera, laser, scene.index)
+    parts, beam = [], Beam.of(laser, scene.light, scene.index)
+    for number in np.linspace(0, len(scene) - 1, 5).astype(int)[1:4]:
+        seen = beam, scan_lines, scene.surroundings.caster, scene.pose(int(number))
+        parts.append(find_lit_line(*seen, cast_fan(*seen)).positions)
+    rows = np.concatenate(parts)
     low = max(int(rows.min() - MARGIN) // 2 * 2, 0)
     high = min(int(rows.max() + MARGIN) // 2 * 2, camera.size[1])
     u, v = camera.principal_point
