@@ -37,7 +37,7 @@ def judge(sample: Sample) -> tuple[np.ndarray, np.ndarray]:
     """Give errors of x, y, z and radius, and what is stated of them."""
     start = Sphere(CENTRE + 2e-4, RADIUS)
     fit, settled = fit_settled(lambda s: refine_shape(start, s.cloud.points), sample)
-    trust = trust_fit(fit, settled)
+    _, trust = trust_fit(fit, settled)
     assert trust.common is not None
     stated = np.sqrt(np.diag(trust.independent) + np.sum(trust.common**2, axis=1))
     return np.append(fit.shape.centre - CENTRE, fit.shape.radius - RADIUS), stated

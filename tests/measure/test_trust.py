@@ -52,7 +52,7 @@ def test_water_and_sheet_move_a_ball_by_what_is_stated_at_one_sigma(usual, colum
 
 def test_all_of_it_is_in_the_uncertainty(usual):
     fit, sample = usual
-    stated = trust_fit(fit, sample).independent[3, 3]
+    stated = trust_fit(fit, sample)[1].independent[3, 3]
     by_light = float(np.sum(moves_of_light(fit, sample)[3] ** 2))
     # Without noise nothing else is; what the formulas leave is far less.
     assert by_light == pytest.approx(stated, rel=0.3)

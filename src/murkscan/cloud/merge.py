@@ -44,6 +44,7 @@ def merge_profiles(profile: Profile, trajectory: Trajectory, *, axes: Sequence[A
         laser=profile.laser,
         branch=profile.branch,
         blur_shift=profile.blur_shift,
+        width=profile.width,
     )
     cameras = trajectory.transform(np.zeros_like(profile.points), profile.time)
     return replace(cloud, normals=estimate_normals(ScanGrid.from_cloud(cloud), cameras))

@@ -24,6 +24,7 @@ _SUMS = np.dtype(
         ("sigma_common", "f8"),
         ("reflectance", "f8"),
         ("blur_shift", "f8"),
+        ("width", "f8"),
         ("best", "f8"),
         ("frame", "i4"),
         ("scan_line", "i4"),
@@ -32,7 +33,7 @@ _SUMS = np.dtype(
     ]
 )
 """What is kept of a voxel: sums times weight, 1/σ², and which point was known best."""
-_MEANS = ("signal", "posterior", "sigma_common", "reflectance", "blur_shift")
+_MEANS = ("signal", "posterior", "sigma_common", "reflectance", "blur_shift", "width")
 """What is averaged."""
 _NUMBERS = ("frame", "scan_line", "laser", "branch")
 """What tells which point was known best."""

@@ -26,6 +26,7 @@ def assemble_stripe(
     signal: Scalars,
     posterior: Scalars | None = None,
     blur_shift: Scalars | None = None,
+    width: Scalars | None = None,
     shadow: float = 0.0,
 ) -> Stripe:
     """Order centres by scan line, number their branches, and give them in full-frame pixels.
@@ -40,6 +41,7 @@ def assemble_stripe(
         signal: Height of the stripe above its surroundings [grey levels].
         posterior: Probability of each centre; 1 unless given.
         blur_shift: How far each was put back for the lens's blur [px of the image]; 0 unless given.
+        width: 1σ of the stripe, at right angles to it [px of the full frame]; 0 unless given.
         shadow: Distance from a brighter centre up to which a much fainter one is its halo or its
             speckle, and is left out [px of the image].
     """
@@ -67,6 +69,7 @@ def assemble_stripe(
         blur_shift=np.zeros(n, np.float32)
         if blur_shift is None
         else (blur_shift[order] * stretch).astype(np.float32),
+        width=np.zeros(n, np.float32) if width is None else width[order].astype(np.float32),
     )
 
 

@@ -56,6 +56,8 @@ class Centres:
     """Roughness of the surface from scan line to scan line [full-frame px]."""
     blur_shift: Scalars
     """How far the lens's blur had drawn it before it was put back [full-frame px]."""
+    width: Scalars
+    """1σ of the stripe at right angles to it, where it is learnt [full-frame px]; else 0."""
 
     def __len__(self) -> int:
         """Count the centres."""
@@ -176,17 +178,20 @@ def _measure_white(
     middle, sigma, rise, _ = measure_at(lines, line, ridges.positions[line, which], noise).T
     whole = np.isfinite(middle)
     full, spread = lines.as_full_frame(middle), lines.stretch * sigma
-    held, usual = posterior[line, which], _scatter_of(len(line), lines.stretch, None)
+    held, usual = posterior[line, which], _learnt(lines, len(line), None)
     return Centres(lines, line, full, spread, rise, held, *usual)[whole]
 
 
-def _scatter_of(count: int, stretch: int, shape: StripeShape | None) -> tuple[Scalars, ...]:
-    """List what centres err by alike, over how many scan lines, how rough their surface is.
+def _learnt(lines: ScanLines, count: int, shape: StripeShape | None) -> tuple[Scalars, ...]:
+    """List what is learnt of centres: see the last columns of `Centres`, from `common` on.
 
-    And last, how far they have been put back for the blur: not yet.
+    Nothing errs alike yet, and nothing has been put back.
     """
-    length, rough = (1.0, _ROUGH) if shape is None else (shape.length, stretch * shape.rough)
-    return tuple(np.full(count, each) for each in (0.0, length, min(rough, _ROUGH), 0.0))
+    length, rough, width = 1.0, _ROUGH, 0.0
+    if shape is not None:
+        length, rough = shape.length, lines.stretch * shape.rough
+        width = lines.stretch * shape.width / math.hypot(1.0, lines.slope)
+    return tuple(np.full(count, each) for each in (0.0, length, min(rough, _ROUGH), 0.0, width))
 
 
 def _fit_one_width(
@@ -205,8 +210,8 @@ def _fit_one_width(
     spread = seen.stretch * np.hypot(shape.misfit * sigma, shape.floor)
     full = seen.as_full_frame(position)
     signal = np.clip(height * (1 + skirt), 0.0, noise.white)
-    held, scatter = posterior[line, which], _scatter_of(len(line), seen.stretch, shape)
-    centres = Centres(ridges.lines, line, full, spread, signal, held, *scatter)[fits]
+    held, learnt = posterior[line, which], _learnt(seen, len(line), shape)
+    centres = Centres(ridges.lines, line, full, spread, signal, held, *learnt)[fits]
     width = seen.stretch * shape.width
     return _without_blur(centres, width=width, blur=shape.blur)
 

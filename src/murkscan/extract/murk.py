@@ -296,4 +296,5 @@ def _as_stripe(centres: Centres, laser: int) -> Stripe:
         signal=centres.signal,
         posterior=centres.posterior,
         blur_shift=centres.blur_shift / stretch,
+        width=centres.width,
     )

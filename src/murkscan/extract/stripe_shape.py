@@ -8,6 +8,7 @@ from functools import partial
 import numpy as np
 from jaxtyping import Float, Shaped
 
+from ..geometry.stripe_blur import MOST_BLUR
 from ..types.arrays import Indices, Scalars
 from ..types.background import Noise, Search, StripeShape
 from .at_once import map_at_once
@@ -39,10 +40,6 @@ _LONGER = 10.0
 """Times that a stripe is longer than 1σ of its width, at least, to be told from a round blur."""
 _CLEAR, _FEW, _SHARE = 8.0, 100, 0.01
 """Score from which a ridge tells of another width, and how many, and what share, must tell."""
-_BLURRED = 1.2
-"""Most blur along the stripe, in widths of the core at right angles to it: it has a skirt, too. On
-the hull it is 1.04 of them, and 1.18 where the stripe is rolled by 63° (benchmarks/murk.py, seed
-0)."""
 _SURE = 0.9
 """Posterior from which a ridge is learnt from."""
 
@@ -174,7 +171,7 @@ class _Learner:
     def _upright(self, shape: StripeShape) -> float:
         """Compute the width at right angles to an even wall's stripe [px of the full frame]."""
         lines = self.look[0].binned(shape.binning)
-        return _BLURRED * lines.stretch * shape.width / math.hypot(1.0, lines.slope)
+        return MOST_BLUR * lines.stretch * shape.width / math.hypot(1.0, lines.slope)
 
     def _with_clutter(self, shape: StripeShape) -> StripeShape:
         """Learn how strongly a filter of this width answers what is no stripe."""

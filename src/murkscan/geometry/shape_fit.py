@@ -57,6 +57,15 @@ class ShapeFit(Generic[SomeShape]):
         moved, middle = self.shape.shifted(offset), self.middle + offset
         return ShapeFit(moved, self.residuals, self.inliers, self.slopes, middle, self.blur)
 
+    def moved(
+        self, step: Float[np.ndarray, " p"], points: Points, sight: Sight
+    ) -> "ShapeFit[SomeShape]":
+        """Change the parameters of a fit to points that were seen from a sight, as in `slopes`."""
+        own = len(step) - 1
+        shape, blur = self.shape.moved(step[:own]), self.blur + float(step[own])
+        residuals, slopes, _ = _linearise(shape, points, sight, blur)
+        return ShapeFit(shape, residuals, self.inliers, slopes, self.middle, blur)
+
 
 def require_points(points: Points, least: int, what: str) -> None:
     """Refuse points that are too few, or not finite.

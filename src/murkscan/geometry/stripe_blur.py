@@ -25,6 +25,7 @@ light of variance h² lies off by h² (3/2 q X'' + q X' (k(X', e) / (n e) - g' v
 metre farther away is lit, and is seen.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,6 +37,10 @@ _LEAST_FACING = 0.5
 """Cosine of the angle between normal and line of sight, or the light, below which the stripe on a
 curved surface is not to be trusted: 60 degrees. Where the light grazes, the stripe widens, and its
 far side is darker than its near one."""
+MOST_BLUR = 1.2
+"""Most blur along a stripe, in widths of its core at right angles to it: it has a skirt, too. On
+the hull it is 1.04 of them, and 1.18 where the stripe is rolled by 63° (benchmarks/murk.py, seed
+0)."""
 _LOST = 3.0
 """What the water takes of the light, there and back, for a metre of depth, and how far that is
 open, 1σ [1/m]: of c = 0 to 3 /m, in which a stripe is seen well."""
@@ -60,6 +65,9 @@ class Sight:
     blur_shift: Scalars | None = None
     """How much farther along its ray the blur had moved each point before the finder put it back
     [m]; None where no finder puts anything back."""
+    widths: Scalars | None = None
+    """1σ of the stripe at each point, as wide as it looks [m]; None where nobody knows, 0 where no
+    finder has learnt it."""
 
     def __getitem__(self, which: Mask) -> "Sight":
         """Pick some of the points."""
@@ -68,7 +76,7 @@ class Sight:
             self.along[which],
             *(
                 None if column is None else column[which]
-                for column in (self.light, self.ranges, self.blur_shift)
+                for column in (self.light, self.ranges, self.blur_shift, self.widths)
             ),
         )
 
@@ -149,6 +157,26 @@ def blur_moves(
     next_order = (own * flat) ** 3 * (17 - 16 * flat) / (8 * flat**3)
     slope, next_order, known = wide * slope, wide**2 * next_order, max(blur, 0.0)
     return blur * slope + known**2 * next_order, slope + 2 * known * next_order
+
+
+def expect_blur(sight: Sight) -> tuple[float, float] | None:
+    """Give what is known of the blur beforehand: between none and what the stripe's width allows.
+
+    The width is that of the blur and of the sheet together.
+
+    Args:
+        sight: From where points of one shape were seen.
+
+    Returns:
+        Its variance and the standard deviation of that [m²]; None where no width is known.
+
+    References:
+        JCGM 100:2008, section 4.3.7 (what lies between two limits, and nothing else is known).
+    """
+    if sight.widths is None or not np.all(sight.widths > 0):
+        return None
+    most = MOST_BLUR**2 * float(np.mean(sight.widths**2))
+    return most / 2, most / math.sqrt(12)
 
 
 def sheet_moves(shape: AnyShape, points: Points, sight: Sight) -> Scalars:

@@ -36,7 +36,7 @@ def save_stripe(path: Path, stripe: Stripe) -> None:
     columns = {"frame": stripe.frame, "time_s": stripe.time, "u": u, "v": v}
     columns |= {"sigma": stripe.sigma, "signal": stripe.signal, "posterior": stripe.posterior}
     columns |= {"laser": stripe.laser, "branch": stripe.branch, "blur_shift_px": stripe.blur_shift}
-    save_columns(path, columns)
+    save_columns(path, columns | {"width_px": stripe.width})
 
 
 def load_stripe(path: Path) -> Stripe:
@@ -56,6 +56,7 @@ def load_stripe(path: Path) -> Stripe:
         laser=columns["laser"],
         branch=columns["branch"],
         blur_shift=columns.of_late("blur_shift_px"),
+        width=columns.of_late("width_px"),
     )
 
 
@@ -69,7 +70,8 @@ def save_profile(path: Path, profile: Profile) -> None:
     columns = {"frame": profile.frame, "time_s": profile.time, "laser": profile.laser}
     columns |= {"u": u, "v": v, "x_m": x, "y_m": y, "z_m": z, "sigma_m": profile.sigma}
     columns |= {"signal": profile.signal, "posterior": profile.posterior}
-    save_columns(path, columns | {"branch": profile.branch, "blur_shift_m": profile.blur_shift})
+    columns |= {"branch": profile.branch, "blur_shift_m": profile.blur_shift}
+    save_columns(path, columns | {"width_px": profile.width})
 
 
 def load_profile(path: Path) -> Profile:
@@ -90,6 +92,7 @@ def load_profile(path: Path) -> Profile:
         posterior=columns["posterior"],
         branch=columns["branch"],
         blur_shift=columns.of_late("blur_shift_m"),
+        width=columns.of_late("width_px"),
     )
 
 
@@ -135,8 +138,8 @@ def save_cloud_part(path: Path, part: CloudPart) -> None:
     rows = as_rows(part.cloud)
     columns = {_SHOWN_AS.get(name, name): rows[name] for name in _ORDER}
     causes = np.array(["", *part.causes])
-    columns |= {"blur_shift_m": part.cloud.blur_shift, "taken_out": causes[part.taken_out]}
-    save_columns(path, columns)
+    columns |= {"blur_shift_m": part.cloud.blur_shift, "width_px": part.cloud.width}
+    save_columns(path, columns | {"taken_out": causes[part.taken_out]})
 
 
 def load_cloud_part(path: Path) -> CloudPart:
@@ -151,7 +154,8 @@ def load_cloud_part(path: Path) -> CloudPart:
     taken_out = numbers + (0 if "" in words else 1)
     there = [name for name in _ORDER if name not in ADDED or name in columns]
     cloud = from_columns({name: columns[_SHOWN_AS.get(name, name)] for name in there})
-    cloud = replace(cloud, blur_shift=columns.of_late("blur_shift_m"))
+    late = {"blur_shift": columns.of_late("blur_shift_m"), "width": columns.of_late("width_px")}
+    cloud = replace(cloud, **late)
     return CloudPart(cloud, taken_out.astype(np.uint8), causes)
 
 

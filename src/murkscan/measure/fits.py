@@ -59,7 +59,7 @@ def trust_plane(sample: Sample) -> tuple[ShapeFit[Plane], FitUncertainty]:
     if np.sum(sample.cloud.normals @ start.normal) < 0:
         start = Plane(-start.normal, -start.distance)
     fit = refine_shape(start, points - middle).shifted(middle)
-    return fit, trust_fit(fit, sample)
+    return trust_fit(fit, sample)
 
 
 def measure_sphere(sample: Sample) -> Measurement:
@@ -90,7 +90,7 @@ def trust_sphere(sample: Sample) -> tuple[ShapeFit[Sphere], FitUncertainty]:
     """
     _require_profiles(sample, "sphere")
     fit, settled = fit_settled(lambda s: fit_sphere(s.cloud.points, sight=s.sight), sample)
-    return fit, trust_fit(fit, settled)
+    return trust_fit(fit, settled)
 
 
 def measure_cylinder(sample: Sample) -> Measurement:
@@ -109,6 +109,7 @@ def measure_cylinder(sample: Sample) -> Measurement:
     fit, settled = fit_settled(
         lambda s: fit_cylinder(s.cloud.points, normals, sight=s.sight), sample
     )
+    fit, trust = trust_fit(fit, settled)
     cylinder, sides = fit.shape, span_plane(fit.shape.axis)
     values = {"radius": cylinder.radius, "diameter": 2 * cylinder.radius}
     values |= dict(zip(("x", "y", "z"), cylinder.point.tolist(), strict=True))
@@ -121,7 +122,7 @@ def measure_cylinder(sample: Sample) -> Measurement:
     how[2:5] -= np.outer(cylinder.axis / cylinder.axis[most], how[2 + most])
     how[2 + most] = 0.0
     units = ("m",) * 5 + ("",) * 3
-    trust, places = trust_fit(fit, settled), {"on the axis": cylinder.point}
+    places = {"on the axis": cylinder.point}
     return _tell("cylinder", fit, trust, sample, values, units, how, places)
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from jaxtyping import Float
@@ -9,7 +10,7 @@ from jaxtyping import Float
 from ..geometry.correlated_errors import covariance_of_fit
 from ..geometry.shape import AnyShape, Slopes
 from ..geometry.shape_fit import ShapeFit
-from ..geometry.stripe_blur import loss_moves, sheet_moves
+from ..geometry.stripe_blur import expect_blur, loss_moves, sheet_moves
 from ..types.quantity import Quantity
 from .sample import Sample
 
@@ -18,6 +19,8 @@ _BLUR_MODEL = 0.2
 met to a quarter, with finders as different as gray gravity and Murk."""
 _MOST_SHIFTED = 2000
 """Points for which the rig's errors are traced: they vary slowly over a shape."""
+
+Shape = TypeVar("Shape", bound=AnyShape)
 
 LinearMap = Float[np.ndarray, "q p"]
 """Change of each quantity with each parameter of a fit."""
@@ -60,8 +63,11 @@ class FitUncertainty:
         )
 
 
-def trust_fit(fit: ShapeFit[AnyShape], sample: Sample) -> FitUncertainty:
-    """Find how far a fit's parameters are to be trusted.
+def trust_fit(fit: ShapeFit[Shape], sample: Sample) -> tuple[ShapeFit[Shape], FitUncertainty]:
+    """Move a fit to what is known of the blur beforehand, and find how far it is to be trusted.
+
+    A small ball, or a pipe, is larger with less blur, and hardly fits worse: where its points leave
+    that open, the stripe's width tells more.
 
     Args:
         fit: The fit to the sample's points.
@@ -71,9 +77,40 @@ def trust_fit(fit: ShapeFit[AnyShape], sample: Sample) -> FitUncertainty:
     independent = covariance_of_fit(
         fit.slopes[inside], fit.residuals[inside], sample.profile[inside], sample.line[inside]
     )
-    by_light = moves_of_light(fit, sample)
-    matrix = independent.matrix + by_light @ by_light.T
-    return FitUncertainty(matrix, independent.degrees, _common_moves(fit, sample))
+    expected, spread, gain = _weigh_blur(fit, sample, independent.matrix)
+    if sample.sight is not None and gain.any():
+        fit = fit.moved(gain * (expected - fit.blur), sample.cloud.points, sample.sight)
+    keep = np.eye(len(gain))
+    keep[:, -1] -= gain
+    by_light = np.column_stack([keep @ moves_of_light(fit, sample), spread * gain])
+    matrix = keep @ independent.matrix @ keep.T + by_light @ by_light.T
+    common = _common_moves(fit, sample)
+    common = None if common is None else keep @ common
+    return fit, FitUncertainty(matrix, independent.degrees, common)
+
+
+def _weigh_blur(
+    fit: ShapeFit[AnyShape], sample: Sample, matrix: Float[np.ndarray, "p p"]
+) -> tuple[float, float, Float[np.ndarray, " p"]]:
+    """Weigh what is known of the blur beforehand against what the points tell.
+
+    Returns:
+        The blur that is expected and its standard deviation [m²], and by how much each parameter
+        changes for each square metre by which the fitted blur falls short of it.
+
+    References:
+        Gelb, Applied Optimal Estimation, 1974, section 4.2 (the gain).
+    """
+    known = None if sample.sight is None else expect_blur(sample.sight[fit.inliers])
+    if known is None or len(matrix) == _count_own(fit, sample):
+        return 0.0, 0.0, np.zeros(len(matrix))
+    expected, spread = known
+    return expected, spread, matrix[:, -1] / (matrix[-1, -1] + spread**2)
+
+
+def _count_own(fit: ShapeFit[AnyShape], sample: Sample) -> int:
+    """Count the parameters of a fit that are its shape's own."""
+    return len(fit.shape.slopes(sample.cloud.points[:1])[0])
 
 
 def moves_of_light(fit: ShapeFit[AnyShape], sample: Sample) -> Float[np.ndarray, "p 3"]:
@@ -90,7 +127,7 @@ def moves_of_light(fit: ShapeFit[AnyShape], sample: Sample) -> Float[np.ndarray,
     moves = np.zeros((parameters, 3))
     if sample.sight is None:
         return moves
-    own = len(fit.shape.slopes(sample.cloud.points[:1])[0])
+    own = _count_own(fit, sample)
     seen = fit.shape, sample.cloud.points[inside], sample.sight[inside]
     if parameters > own:
         # Of a lens that blurs in another way, the blur that is fitted takes up what it can: it is

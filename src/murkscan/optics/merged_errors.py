@@ -133,6 +133,7 @@ class MergedErrors:
         The arguments are those of `shifts`.
         """
         columns, ranges = np.zeros((3, len(cloud), 3)), np.zeros(len(cloud))
+        widths = np.zeros(len(cloud))
         for number in np.unique(owner).tolist():
             one, mine = self.passes[number], owner == number
             if one is None:
@@ -140,8 +141,9 @@ class MergedErrors:
             some = cloud[mine]
             seen = look_back(some, some.frame.astype(float), one.trajectory, one.rig)
             columns[:, mine], ranges[mine] = (seen.rays, seen.along, seen.light), seen.ranges
+            widths[mine] = seen.widths
         rays, along, light = columns
-        return Sight(rays, along, light, ranges, cloud.blur_shift.astype(float))
+        return Sight(rays, along, light, ranges, cloud.blur_shift.astype(float), widths)
 
     def is_facing(self, owner: Indices, cloud: PointCloud) -> Mask:
         """Tell which points turn neither from their camera nor from their light; see `is_facing`.

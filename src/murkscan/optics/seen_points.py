@@ -18,6 +18,10 @@ from .uncertainty import Shifts, common_shifts
 from .view import project
 from .water import refractive_index
 
+_ASKED = 100
+"""Points for which the angle of a pixel is computed: it varies by some per cent over a picture."""
+_ASIDE = 1e-3
+"""By how much of its range each is moved for that: about a pixel."""
 _PART = 20_000
 """Points that one thread works on: some ten megabytes."""
 
@@ -42,7 +46,22 @@ def look_back(cloud: PointCloud, times: Scalars, trajectory: Trajectory, rig: Ri
         stripes[mine] = (0.0, 1.0, 0.0) if rig.lasers[number].axis == "x" else (1.0, 0.0, 0.0)
         lights[mine] = light_across(rig.lasers[number], index)
     along, light = (trajectory.transform(way, times) - cameras for way in (stripes, lights))
-    return Sight(rays, along, light, ranges, cloud.blur_shift.astype(float))
+    widths = _angle_of_pixel(cloud, times, trajectory, rig) * ranges * cloud.width
+    return Sight(rays, along, light, ranges, cloud.blur_shift.astype(float), widths)
+
+
+def _angle_of_pixel(cloud: PointCloud, times: Scalars, trajectory: Trajectory, rig: Rig) -> float:
+    """Compute how wide a pixel along the stripe looks, as usual for some points [rad]."""
+    some = slice(None, None, len(cloud) // _ASKED + 1)
+    points = trajectory.to_camera(cloud.points[some], times[some])
+    index = refractive_index(rig.water, rig.wavelength)
+    step = _ASIDE * np.linalg.norm(points, axis=1, keepdims=True)
+    lies_along_y = np.array([laser.axis == "x" for laser in rig.lasers])[cloud.laser[some]]
+    aside = np.where(lies_along_y[:, None], (0.0, 1.0, 0.0), (1.0, 0.0, 0.0)) * step
+    moved = project(rig.camera, points + aside, index) - project(rig.camera, points, index)
+    pixels = np.linalg.norm(moved, axis=1)
+    seen = pixels > 0
+    return _ASIDE / float(np.median(pixels[seen])) if seen.any() else 0.0
 
 
 def find_pixels(points: Points, times: Scalars, trajectory: Trajectory, rig: Rig) -> Pixels:

@@ -62,6 +62,7 @@ def triangulate(stripe: Stripe, rig: Rig, method: AbstractTriangulation) -> Prof
         posterior=stripe.posterior[seen],
         branch=stripe.branch[seen],
         blur_shift=(slope[seen] * stripe.blur_shift[seen]).astype(np.float32),
+        width=stripe.width[seen],
     )
 
 

@@ -56,6 +56,11 @@ class PointCloud(Table):
     )
     """How much farther along its ray the lens's blur had moved each point before the finder put it
     back [m]; 0 where the finder puts nothing back. Exported clouds do not have it."""
+    width: Ratios = field(
+        default_factory=lambda: np.zeros(0, np.float32), metadata={"may_be_left_out": True}
+    )
+    """1σ of the stripe in the picture, where the finder has learnt it [px]; else 0. Exported clouds
+    do not have it."""
 
     def is_sound(self) -> Mask:
         """Tell which points can be: at a place, with a normal, and with deviations not below 0.

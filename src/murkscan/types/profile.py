@@ -35,3 +35,7 @@ class Profile(Table):
     )
     """How much farther away the blur of the lens had moved each point before the finder put it back
     [m]; 0 where the finder puts nothing back."""
+    width: Ratios = field(
+        default_factory=lambda: np.zeros(0, np.float32), metadata={"may_be_left_out": True}
+    )
+    """1σ of the stripe in the picture, where the finder has learnt it [px]; else 0."""

@@ -36,3 +36,8 @@ class Stripe(Table):
     )
     """How far the blur of the lens had drawn the centre along its scan line before the finder put
     it back [px]; 0 where the finder puts nothing back."""
+    width: Ratios = field(
+        default_factory=lambda: np.zeros(0, np.float32), metadata={"may_be_left_out": True}
+    )
+    """1σ of the stripe, at right angles to it, where the finder has learnt it [px]; else 0. The
+    lens cannot blur by much more."""
