@@ -44,12 +44,12 @@ def test_the_columns_are_those_of_the_contract(tmp_path):
     assert {name: str(stripe.field(name).type) for name in stripe.names} == {
         "frame": "uint32", "time_s": "double", "u": "double", "v": "double", "sigma": "float",
         "signal": "float", "posterior": "float", "laser": "uint8", "branch": "uint8",
-        "blur_shift_px": "float",
+        "blur_shift_px": "float", "width_px": "float",
     }  # fmt: skip
     profile = pq.read_schema(tmp_path / "p.parquet")
     assert profile.names == [
         "frame", "time_s", "laser", "u", "v", "x_m", "y_m", "z_m", "sigma_m", "signal", "posterior",
-        "branch", "blur_shift_m",
+        "branch", "blur_shift_m", "width_px",
     ]  # fmt: skip
 
 
