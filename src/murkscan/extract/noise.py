@@ -7,7 +7,6 @@ from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Float, Int32, Shaped
-from scipy.optimize import nnls
 
 from .._kernels.counts import (
     count_bends,
@@ -236,6 +235,8 @@ def fit_law(bins: Bins, least: Noise) -> Noise:
     if len(bins) < 3 or bins[:, 0].max() <= 1.5 * bins[:, 0].min() + 2.0:
         terms = np.array([_average(bins), 0.0, 0.0])
     else:
+        from scipy.optimize import nnls  # loaded when due: it takes a twentieth of a second
+
         levels, variances, counts = bins.T
         columns = np.stack([np.ones_like(levels), levels, levels**2], axis=1)
         weights = np.sqrt(counts) / np.maximum(variances, 0.05)

@@ -1,8 +1,6 @@
 """Correct a scan's trajectory from what it saw of the same places, or say why that cannot be."""
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
 
 from ..motion import AbstractMotion
 from ..motion.corrected import correct_motion
@@ -10,24 +8,7 @@ from ..motion.correction_words import tell_correction, tell_doubt, tell_sheets
 from ..motion.sheets_apart import compare_sheets
 from ..project import Project, load_scan_rig
 from ..types.trajectory import Trajectory
-
-
-@dataclass(frozen=True, eq=False)
-class Corrected:
-    """The poses of a scan, and what is to be said of them."""
-
-    trajectory: Trajectory
-    words: tuple[str, ...] = ()
-    accuracy: str = ""
-    """How well the poses are known, in words, where the scan has corrected them."""
-    moved: float | None = None
-    """How far they were moved, RMS [m]."""
-
-
-def is_correctable(motion: AbstractMotion, lasers: Sequence[int]) -> bool:
-    """Tell whether a scan may know better than its motion: of a straight pass two lasers do."""
-    measured = motion.measure()
-    return len(lasers) > 1 or (measured is not None and measured.is_placed)
+from .corrected import Corrected
 
 
 def correct(project: Project, motion: AbstractMotion, logged: Trajectory) -> Corrected:

@@ -15,7 +15,7 @@ from ..project import (
     load_recording,
 )
 from ..types.trajectory import Trajectory
-from .correct import Corrected, correct, is_correctable
+from .corrected import Corrected, is_correctable
 from .progress import Progress, silent
 from .stage_runner import run_stage
 
@@ -49,7 +49,11 @@ def follow_motion(
         check_times(recording.path, motion, is_timed=recording.is_timed)
         pictures = times.frame.astype(float) / recording.fields_per_picture
         logged = motion.follow(times.time, pictures)
-        return logged, correct(project, motion, logged) if is_adjusted else Corrected(logged)
+        if not is_adjusted:
+            return logged, Corrected(logged)
+        from .correct import correct  # loaded when due: few scans correct anything
+
+        return logged, correct(project, motion, logged)
 
     def make(found: tuple[Trajectory, Corrected]) -> MotionResult:
         logged, corrected = found

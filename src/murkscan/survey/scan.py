@@ -23,9 +23,7 @@ from .extract import check_recording, extract_recording
 from .mesh import build_mesh
 from .motion import check_motion, follow_motion
 from .progress import Progress, silent
-from .report import write_report
 from .triangulate import triangulate_stripes
-from .view import draw_views
 
 
 def scan(
@@ -104,6 +102,10 @@ def scan(
             progress=progress,
         )  # fmt: skip
         build_mesh(project, mesher, executor=executor, progress=progress)
+
+        from .report import write_report  # loaded when due: the first stage need not wait for it
+        from .view import draw_views
+
         draw_views(project, progress=progress)
         write_report(project, spacing=spacing, progress=progress)
     return project
