@@ -1,10 +1,11 @@
 """Means of what is alike, so that a particle among it does not count."""
 
 import numpy as np
-from numba import njit
+
+from .compiled import loop
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def average_alike(
     values: np.ndarray, law: np.ndarray, spreads: float, least: float
 ) -> tuple[np.ndarray, np.ndarray]:

@@ -1,10 +1,11 @@
 """Where a stripe has ended, and its blur goes on for some scan lines."""
 
 import numpy as np
-from numba import njit
+
+from .compiled import loop, part
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def find_blurred_ends(
     positions: np.ndarray, heights: np.ndarray, counts: np.ndarray, shapes: np.ndarray,
     tails: np.ndarray, slope: float, least: float, margin: float,
@@ -31,7 +32,7 @@ def find_blurred_ends(
     return is_blur
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _end_beside(
     u: int, k: int, positions: np.ndarray, heights: np.ndarray, counts: np.ndarray,
     shapes: np.ndarray, tails: np.ndarray, slope: float, margin: float,
@@ -60,7 +61,7 @@ def _end_beside(
     return away
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _goes_on(
     u: int, k: int, positions: np.ndarray, heights: np.ndarray, counts: np.ndarray,
     faint: np.ndarray, slope: float, least: float,
@@ -75,7 +76,7 @@ def _goes_on(
     return False
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _highest_near(
     positions: np.ndarray, heights: np.ndarray, counts: np.ndarray,
     line: int, position: float, near: float,

@@ -1,7 +1,8 @@
 """A hidden Markov chain over scan lines: at which ridge is the stripe, or is there none?"""
 
 import numpy as np
-from numba import njit
+
+from .compiled import loop, part
 
 _GAP = 4
 """Lines over which a link may reach: three may be missing between."""
@@ -18,7 +19,7 @@ _ANYTHING = 0.0375
 """Density of a step in height that may be anything."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@loop(error_model="numpy")
 def follow_chain(
     positions: np.ndarray, heights: np.ndarray, counts: np.ndarray, grains: np.ndarray,
     evidence: np.ndarray, length: int, birth: float, death: float, miss: float, bends: np.ndarray,
@@ -69,10 +70,14 @@ def follow_chain(
         none_ahead[u] = none / total
         scale[u] = (scale[u - 1] if u else 0.0) + np.log(total)
     behind = _run_back(counts, evidence, links, scale, start, birth, death)
-    return np.minimum(ahead * behind, 1.0)
+    for u in range(num_lines):
+        for k in range(most):
+            both = ahead[u, k] * behind[u, k]
+            ahead[u, k] = 1.0 if both > 1.0 else both
+    return ahead
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@part(error_model="numpy")
 def _run_back(
     counts: np.ndarray, evidence: np.ndarray, links: np.ndarray, scale: np.ndarray,
     start: float, birth: float, death: float,
@@ -100,7 +105,7 @@ def _run_back(
     return behind
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@part(error_model="numpy")
 def _weigh_links(
     positions: np.ndarray, heights: np.ndarray, counts: np.ndarray, grains: np.ndarray,
     evidence: np.ndarray, length: int, death: float, miss: float, bends: np.ndarray,
@@ -132,7 +137,7 @@ def _weigh_links(
     return links
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _weigh_step(step: float, gap: int, grain: float, bends: np.ndarray) -> float:
     """Give the density of a step in position that is no jump to anywhere: two Laplace laws."""
     narrow, broad = bends[0] * gap + 0.1 * grain, bends[1] * gap
@@ -140,7 +145,7 @@ def _weigh_step(step: float, gap: int, grain: float, bends: np.ndarray) -> float
     return density + bends[3] * np.exp(-step / broad) / (2.0 * broad)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@part(error_model="numpy")
 def _weigh_changes(log: float, others: np.ndarray, spread: float, like: np.ndarray) -> None:
     """Compute the densities of steps in the logarithm of height from others to one.
 

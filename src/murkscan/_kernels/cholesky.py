@@ -1,10 +1,11 @@
 """Small symmetric equations."""
 
 import numpy as np
-from numba import njit
+
+from .compiled import part
 
 
-@njit(cache=True, nogil=True)
+@part()
 def solve(matrix: np.ndarray, right: np.ndarray) -> bool:
     """Solve symmetric equations in place by Cholesky's method; False where they are singular.
 
@@ -25,7 +26,7 @@ def solve(matrix: np.ndarray, right: np.ndarray) -> bool:
     return True
 
 
-@njit(cache=True, nogil=True)
+@part()
 def substitute(root: np.ndarray, right: np.ndarray) -> None:
     """Solve in place for one more right side, with the root that `solve` has left."""
     n = len(right)
@@ -39,7 +40,7 @@ def substitute(root: np.ndarray, right: np.ndarray) -> None:
         right[i] /= root[i, i]
 
 
-@njit(cache=True, nogil=True)
+@part()
 def first_variance(root: np.ndarray) -> float:
     """Give the first element on the diagonal of the inverse, from the root."""
     n = len(root)

@@ -1,7 +1,8 @@
 """The nearest place of many triangles, by a tree of boxes."""
 
-import numba
 import numpy as np
+
+from .compiled import loop, part
 
 _LEAF = 4
 """Triangles of one leaf, at most."""
@@ -11,7 +12,7 @@ _DEEPEST = 64
 """Levels of a tree: those of more triangles than fit into any memory."""
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@loop(error_model="numpy")
 def count_levels(count: int) -> int:
     """Give how often triangles are halved until a leaf holds the rest."""
     levels = 0
@@ -20,7 +21,7 @@ def count_levels(count: int) -> int:
     return levels
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@loop(error_model="numpy")
 def sort_triangles(middles: np.ndarray) -> np.ndarray:
     """Order triangles so that halves of halves lie together, each cut across its longest side.
 
@@ -37,8 +38,11 @@ def sort_triangles(middles: np.ndarray) -> np.ndarray:
             mine = order[start:stop].copy()
             widest, longest = 0, -1.0
             for axis in range(3):
-                values = middles[mine, axis]
-                side = values.max() - values.min()
+                low, high = np.inf, -np.inf
+                for i in range(start, stop):
+                    value = middles[order[i], axis]
+                    low, high = min(low, value), max(high, value)
+                side = high - low
                 if side > longest:
                     widest, longest = axis, side
             sorting = np.argsort(middles[mine, widest])
@@ -47,7 +51,7 @@ def sort_triangles(middles: np.ndarray) -> np.ndarray:
     return order
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@loop(error_model="numpy")
 def bound_nodes(triangles: np.ndarray) -> np.ndarray:
     """Give each node's box.
 
@@ -64,8 +68,12 @@ def bound_nodes(triangles: np.ndarray) -> np.ndarray:
     for k in range(1 << levels):
         start, stop = k * n >> levels, (k + 1) * n >> levels
         for axis in range(3):
-            boxes[first + k, 0, axis] = triangles[start:stop, :, axis].min()
-            boxes[first + k, 1, axis] = triangles[start:stop, :, axis].max()
+            low, high = np.inf, -np.inf
+            for i in range(start, stop):
+                for corner in range(3):
+                    value = triangles[i, corner, axis]
+                    low, high = min(low, value), max(high, value)
+            boxes[first + k, 0, axis], boxes[first + k, 1, axis] = low, high
     for node in range(first - 1, -1, -1):
         for axis in range(3):
             boxes[node, 0, axis] = min(boxes[2 * node + 1, 0, axis], boxes[2 * node + 2, 0, axis])
@@ -73,7 +81,7 @@ def bound_nodes(triangles: np.ndarray) -> np.ndarray:
     return boxes
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@loop(error_model="numpy")
 def find_nearest(
     points: np.ndarray, triangles: np.ndarray, boxes: np.ndarray, within: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -101,7 +109,7 @@ def find_nearest(
     return face, weights, away
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@part(error_model="numpy")
 def _search(
     point: np.ndarray, triangles: np.ndarray, boxes: np.ndarray, best: float, weights: np.ndarray
 ) -> tuple[int, float]:
@@ -138,7 +146,7 @@ def _search(
     return face, best
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@part(error_model="numpy")
 def _square_to_box(point: np.ndarray, box: np.ndarray) -> float:
     square = 0.0
     for axis in range(3):
@@ -147,7 +155,7 @@ def _square_to_box(point: np.ndarray, box: np.ndarray) -> float:
     return square
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@part(error_model="numpy")
 def _square_to_triangle(point: np.ndarray, triangle: np.ndarray, weight: np.ndarray) -> float:
     """Give the squared distance, and write the corners' weights at the nearest place."""
     best = _square_to_inside(point, triangle, weight)
@@ -164,7 +172,7 @@ def _square_to_triangle(point: np.ndarray, triangle: np.ndarray, weight: np.ndar
     return best
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@part(error_model="numpy")
 def _square_to_inside(point: np.ndarray, triangle: np.ndarray, weight: np.ndarray) -> float:
     """Write the weights of the perpendicular's foot; a negative distance where it lies outside."""
     a, b, c = triangle[0], triangle[1], triangle[2]
@@ -184,7 +192,7 @@ def _square_to_inside(point: np.ndarray, triangle: np.ndarray, weight: np.ndarra
     return (px * nx + py * ny + pz * nz) ** 2 / whole
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@part(error_model="numpy")
 def _on_side(point: np.ndarray, a: np.ndarray, b: np.ndarray) -> tuple[float, float]:
     """Give how far along a side its nearest place lies, from 0 to 1, and its squared distance."""
     along = length = 0.0

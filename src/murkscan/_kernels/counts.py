@@ -1,10 +1,11 @@
 """How often whole numbers are met: grey levels, and their differences in and between pictures."""
 
 import numpy as np
-from numba import njit
+
+from .compiled import loop
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def count_levels(image: np.ndarray, counts: np.ndarray) -> None:
     """Add to `counts` how often each grey level is met."""
     for v in range(image.shape[0]):
@@ -12,7 +13,7 @@ def count_levels(image: np.ndarray, counts: np.ndarray) -> None:
             counts[image[v, u]] += 1
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def count_bends(image: np.ndarray, apart: int, every: int, counts: np.ndarray) -> None:
     """Add to `counts` the sizes of second differences of pixels `apart`, of every so many rows."""
     for v in range(0, image.shape[0], every):
@@ -21,7 +22,7 @@ def count_bends(image: np.ndarray, apart: int, every: int, counts: np.ndarray) -
             counts[abs(ends - 2 * np.int64(image[v, u + apart]))] += 1
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def count_changes(first: np.ndarray, second: np.ndarray, every: int, counts: np.ndarray) -> None:
     """Add to `counts` the sizes of the differences of two pictures, of every so many rows."""
     for v in range(0, first.shape[0], every):
@@ -29,7 +30,7 @@ def count_changes(first: np.ndarray, second: np.ndarray, every: int, counts: np.
             counts[abs(np.int64(second[v, u]) - np.int64(first[v, u]))] += 1
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def list_fourth_differences(
     image: np.ndarray, lag: int, every: int
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -52,7 +53,7 @@ def list_fourth_differences(
     return levels, bends
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def sort_by(keys: np.ndarray, values: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
     """Sort values by their keys, whole numbers from 0 to `most`; those of equal keys keep order."""
     starts = np.zeros(most + 2, np.int64)
@@ -68,7 +69,7 @@ def sort_by(keys: np.ndarray, values: np.ndarray, most: int) -> tuple[np.ndarray
     return ordered, out
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@loop(fastmath=True)
 def winsorise(values: np.ndarray, close: float, left: float, turns: int) -> float:
     """Compute the variance of whole numbers around 0 with far ones pulled in, again and again.
 

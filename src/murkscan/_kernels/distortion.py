@@ -1,10 +1,11 @@
 """Lens distortion of normalised image points, and its inverse."""
 
 import numpy as np
-from numba import njit
+
+from .compiled import loop, part
 
 
-@njit(cache=True, nogil=True, inline="always")
+@part(inline="always")
 def _bend(x: float, y: float, d: np.ndarray) -> tuple[float, float, float, float, float]:
     """Distorted x and y, and the distortion's derivatives dx/dx, dx/dy = dy/dx, dy/dy."""
     k1, k2, p1, p2, k3 = d[0], d[1], d[2], d[3], d[4]
@@ -19,7 +20,7 @@ def _bend(x: float, y: float, d: np.ndarray) -> tuple[float, float, float, float
     return bent_x, bent_y, xx, xy, yy
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def distort_points(flat: np.ndarray, distortion: np.ndarray) -> np.ndarray:
     """Bend normalised points (n 2) by k1 k2 p1 p2 k3."""
     bent = np.empty_like(flat)
@@ -29,7 +30,7 @@ def distort_points(flat: np.ndarray, distortion: np.ndarray) -> np.ndarray:
     return bent
 
 
-@njit(cache=True, nogil=True)
+@part()
 def straighten(bent_x: float, bent_y: float, distortion: np.ndarray) -> tuple[float, float]:
     """Undo `distort_points` for one point; NaN where Newton's method finds no answer."""
     x, y, step = bent_x, bent_y, np.inf
@@ -45,7 +46,7 @@ def straighten(bent_x: float, bent_y: float, distortion: np.ndarray) -> tuple[fl
     return (x, y) if step < 1e-9 else (np.nan, np.nan)
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def undistort_points(bent: np.ndarray, distortion: np.ndarray) -> np.ndarray:
     """Straighten normalised points (n 2); NaN where there is no answer."""
     flat = np.empty_like(bent)

@@ -1,12 +1,12 @@
 """The paper's equation (4), from pixels to points in one pass over memory."""
 
 import numpy as np
-from numba import njit
 
+from .compiled import loop
 from .distortion import straighten
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def locate_points(
     pixels: np.ndarray,
     focal: tuple[float, float],

@@ -1,7 +1,8 @@
 """Small plane pieces of a surface, from the cells of a scan's own grid."""
 
-import numba
 import numpy as np
+
+from .compiled import loop, part
 
 MOMENTS = 11
 """What a cell sums: count, x, y, z, xx, xy, xz, yy, yz, zz, brightness."""
@@ -13,7 +14,7 @@ _ALL_SIDES = 1 << 1 | 1 << 7 | 1 << 3 | 1 << 5
 """Cells beside the middle one at (−1, 0), (1, 0), (0, −1) and (0, 1)."""
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@loop(error_model="numpy")
 def sum_cells(
     points: np.ndarray,
     profile: np.ndarray,
@@ -58,7 +59,7 @@ def sum_cells(
     return sums
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@loop(error_model="numpy")
 def fit_facets(
     sums: np.ndarray, num_rows: int, num_columns: int, axes: np.ndarray, reach: int, jump: float
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -99,7 +100,7 @@ def fit_facets(
     return found, middle
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@part(error_model="numpy")
 def _add_around(
     sums: np.ndarray,
     middle: np.ndarray,
@@ -131,7 +132,7 @@ def _add_around(
     return total[0] >= _FEWEST and (sides & _ALL_SIDES) == _ALL_SIDES
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@part(error_model="numpy")
 def _add_cell(
     s: np.ndarray, m: np.ndarray, bright: float, axes: np.ndarray, total: np.ndarray
 ) -> None:
@@ -158,7 +159,7 @@ def _add_cell(
     total[10] += k * bright
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@part(error_model="numpy")
 def _solve(total: np.ndarray, axes: np.ndarray, found: np.ndarray) -> None:
     """Fit height and brightness over u and v; leave NaN where the points lie on one line."""
     n, su, sv, sh, b = total[0], total[1], total[2], total[3], total[10]
@@ -181,7 +182,7 @@ def _solve(total: np.ndarray, axes: np.ndarray, found: np.ndarray) -> None:
     found[8] = (suu * bv - suv * bu) / det
 
 
-@numba.njit(cache=True, nogil=True, inline="always")
+@part(inline="always")
 def _form(
     p: np.ndarray, q: np.ndarray, xx: float, xy: float, xz: float, yy: float, yz: float, zz: float
 ) -> float:

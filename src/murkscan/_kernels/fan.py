@@ -7,8 +7,8 @@ the fan's middle inside the housing: straight lines, but no plane.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from .compiled import loop, part
 from .refraction import Interfaces, trace_ray
 
 _Ray = tuple[float, float, float, float, float, float]
@@ -30,7 +30,7 @@ class Fan(NamedTuple):
     """Largest t."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@part(error_model="numpy", inline="always")
 def _fan_ray(t: float, fan: Fan, interfaces: Interfaces) -> _Ray:
     """Start and direction, outside its port, of a fan's ray."""
     c = 1.0 / np.sqrt(1.0 + t * t)
@@ -40,7 +40,7 @@ def _fan_ray(t: float, fan: Fan, interfaces: Interfaces) -> _Ray:
     return x + ox, y + oy, z + oz, dx, dy, dz
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@loop(error_model="numpy")
 def trace_fan_rays(
     tangents: np.ndarray, fan: Fan, interfaces: Interfaces
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -53,14 +53,14 @@ def trace_fan_rays(
     return starts, leaving
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@part(error_model="numpy", inline="always")
 def _cross(
     ax: float, ay: float, az: float, bx: float, by: float, bz: float
 ) -> tuple[float, float, float]:
     return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@part(error_model="numpy", inline="always")
 def _moment(t: float, ray: _Ray, camera_ray: _Ray) -> float:
     """Volume that two lines span, 0 where they meet; without a port it is linear in t."""
     x, y, z, dx, dy, dz = ray
@@ -69,7 +69,7 @@ def _moment(t: float, ray: _Ray, camera_ray: _Ray) -> float:
     return np.sqrt(1.0 + t * t) * ((x - ox) * nx + (y - oy) * ny + (z - oz) * nz)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@part(error_model="numpy")
 def _meeting(
     ends: tuple[float, float, float, float], camera_ray: _Ray, fan: Fan, interfaces: Interfaces
 ) -> _Ray:
@@ -100,7 +100,7 @@ def _meeting(
     return ray
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@part(error_model="numpy", inline="always")
 def _depth_of_meeting(ray: _Ray, camera_ray: _Ray) -> float:
     """How far along the camera's ray the two are nearest; infinite if that is behind either."""
     x, y, z, dx, dy, dz = ray
@@ -115,7 +115,7 @@ def _depth_of_meeting(ray: _Ray, camera_ray: _Ray) -> float:
     return depth if depth >= 0.0 and reach >= 0.0 else np.inf
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@part(error_model="numpy")
 def _depth_on_fan(
     camera_ray: _Ray,
     tangents: np.ndarray,
@@ -137,7 +137,7 @@ def _depth_on_fan(
     return nearest if nearest < np.inf else np.nan
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@loop(error_model="numpy")
 def meet_fan(
     origins: np.ndarray, directions: np.ndarray, fan: Fan, interfaces: Interfaces
 ) -> np.ndarray:
@@ -169,7 +169,7 @@ def meet_fan(
     return points
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@part(error_model="numpy", inline="always")
 def _nearest_sample(x: float, y: float, z: float, starts: np.ndarray, sampled: np.ndarray) -> int:
     """Which of the rays passes nearest to the point."""
     best, least = 0, np.inf
@@ -181,7 +181,7 @@ def _nearest_sample(x: float, y: float, z: float, starts: np.ndarray, sampled: n
     return best
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@part(error_model="numpy", inline="always")
 def _step_to_foot(
     x: float, y: float, z: float, t: float, fan: Fan, interfaces: Interfaces
 ) -> tuple[float, float, float]:
@@ -202,7 +202,7 @@ def _step_to_foot(
     return step, reach, (x * nx + y * ny + z * nz) / np.sqrt(square)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@loop(error_model="numpy")
 def locate_points(points: np.ndarray, fan: Fan, interfaces: Interfaces) -> np.ndarray:
     """Angle, range and signed distance (n 3) of points; NaN behind the start of their ray.
 

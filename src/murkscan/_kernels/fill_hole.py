@@ -1,13 +1,14 @@
 """The triangulation of a closed line of points that has the least area."""
 
-import numba
 import numpy as np
+
+from .compiled import loop, part
 
 _FLAT = 1e-4
 """Area of a triangle, in squares over its longest side, below which it has no normal."""
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@loop(error_model="numpy")
 def least_area(points: np.ndarray, is_barred: np.ndarray) -> np.ndarray:
     """Cover a closed line by triangles between its points, of least area and none of them a line.
 
@@ -44,7 +45,7 @@ def least_area(points: np.ndarray, is_barred: np.ndarray) -> np.ndarray:
     return _collect(split, n)
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@part(error_model="numpy")
 def _price(points: np.ndarray, i: int, j: int, k: int) -> float:
     """Give a triangle's area; one that is hardly more than a line costs as much as a square."""
     ux, vx = points[j, 0] - points[i, 0], points[k, 0] - points[i, 0]
@@ -56,7 +57,7 @@ def _price(points: np.ndarray, i: int, j: int, k: int) -> float:
     return area if area > _FLAT * longest else longest
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@part(error_model="numpy")
 def _collect(split: np.ndarray, n: int) -> np.ndarray:
     """Follow the splits from the whole line down to single triangles."""
     triangles = np.empty((n - 2, 3), np.int64)

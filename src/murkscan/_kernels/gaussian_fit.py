@@ -1,9 +1,9 @@
 """Gaussians on a sloping background, fitted to peaks."""
 
 import numpy as np
-from numba import njit
 
 from .cholesky import solve
+from .compiled import loop, part
 
 _SIZE = 5
 """Parameters: height, centre, width, background, its slope."""
@@ -12,7 +12,7 @@ _NARROWEST, _WIDEST = 0.4, 3.0
 """Widths that are stripes: from less than a pixel to this many times the window."""
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _normal_equations(
     scan: np.ndarray, low: int, high: int, p: np.ndarray, full: float,
     matrix: np.ndarray, right: np.ndarray,
@@ -38,7 +38,7 @@ def _normal_equations(
     return total
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def fit_peaks(
     image: np.ndarray, peaks: np.ndarray, down: bool, half_width: int, noise: float, full: float
 ) -> np.ndarray:

@@ -1,7 +1,8 @@
 """Centres of mass around peaks."""
 
 import numpy as np
-from numba import njit
+
+from .compiled import loop, part
 
 _SIDE = 5
 """Pixels on one side of a peak that give the background there."""
@@ -17,7 +18,7 @@ _TURNS = 4
 """Times that the window is laid anew on its own centre, which halves what is left ten times."""
 
 
-@njit(cache=True, nogil=True)
+@part()
 def side_level(scan: np.ndarray, peak: int, way: int, half_width: int) -> tuple[float, float]:
     """Mean level on one side of a peak, and how far away it was taken.
 
@@ -37,7 +38,7 @@ def side_level(scan: np.ndarray, peak: int, way: int, half_width: int) -> tuple[
     return (level, distance) if distance > 0 else (float(scan[peak]), 1.0)
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def weigh_peaks(
     image: np.ndarray,
     peaks: np.ndarray,
@@ -93,7 +94,7 @@ def weigh_peaks(
     return found
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _weigh(
     scan: np.ndarray, peak: int, base: float, slope: float, reach: float, tilt: float
 ) -> tuple[float, float]:

@@ -1,9 +1,9 @@
 """Centres, joined with their neighbours over scan lines and frames to a bent surface."""
 
 import numpy as np
-from numba import njit
 
 from .cholesky import first_variance, solve, substitute
+from .compiled import loop, part
 
 _SIZE = 5
 """Parameters: centre, its slope over lines, its speed over frames, its curvature over both."""
@@ -12,7 +12,7 @@ _MOST, _COLUMNS = 512, 7
 """Neighbours of a centre that are looked at, and what is known of each."""
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def join_centres(
     lines: np.ndarray, times: np.ndarray, centres: np.ndarray, sigma: np.ndarray,
     common: np.ndarray, length: np.ndarray, rough: np.ndarray, starts: np.ndarray,
@@ -38,7 +38,7 @@ def join_centres(
     return joined
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _join_one(
     near: np.ndarray, count: int, own: float, variance: float, length: float
 ) -> tuple[float, float]:
@@ -53,7 +53,8 @@ def _join_one(
         mean = _normal_equations(near, count, p, excess, 0.25 if turn else 0.0, matrix, right)
         if not solve(matrix, right):
             break
-        p[:] = right
+        for k in range(_SIZE):
+            p[k] = right[k]
         variance = first_variance(matrix)
         together, alone = _weigh_errors(matrix, near, count, p, excess)
         # What goes on over some lines is noise or the surface, and not both.
@@ -63,7 +64,7 @@ def _join_one(
     return p[0], np.sqrt(variance)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@part(error_model="numpy")
 def _normal_equations(
     near: np.ndarray, count: int, p: np.ndarray, excess: float, robust: float,
     matrix: np.ndarray, right: np.ndarray,
@@ -102,7 +103,7 @@ def _normal_equations(
     return misfits / max(weights, 1.0)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@part(error_model="numpy")
 def _weigh_errors(
     root: np.ndarray, near: np.ndarray, count: int, p: np.ndarray, excess: float
 ) -> tuple[float, float]:
@@ -129,7 +130,7 @@ def _weigh_errors(
     return together, alone
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _gather(
     i: int, lines: np.ndarray, times: np.ndarray, centres: np.ndarray, noise: np.ndarray,
     common: np.ndarray, starts: np.ndarray, reach: float, rough: float, near: np.ndarray,
@@ -141,7 +142,7 @@ def _gather(
     """
     count = 0
     for f in range(len(starts) - 1):
-        low = starts[f] + np.searchsorted(lines[starts[f] : starts[f + 1]], lines[i] - reach)
+        low = _first_from(lines, starts[f], starts[f + 1], lines[i] - reach)
         for j in range(low, starts[f + 1]):
             along = lines[j] - lines[i]
             if along > reach or count == near.shape[1]:
@@ -159,3 +160,15 @@ def _gather(
             near[6, count] = common[j]
             count += 1
     return count
+
+
+@part()
+def _first_from(lines: np.ndarray, low: int, high: int, least: float) -> int:
+    """Find the first of the sorted lines low … high - 1 that is at least so large; else high."""
+    while low < high:
+        middle = (low + high) // 2
+        if lines[middle] < least:
+            low = middle + 1
+        else:
+            high = middle
+    return low

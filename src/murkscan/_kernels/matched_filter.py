@@ -1,10 +1,11 @@
 """How much each pixel looks like the middle of a stripe, in standard deviations of the noise."""
 
 import numpy as np
-from numba import njit
+
+from .compiled import loop
 
 
-@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
+@loop(fastmath=True, error_model="numpy")
 def score_pixels(
     signal: np.ndarray, levels: np.ndarray, template: np.ndarray, law: np.ndarray
 ) -> np.ndarray:
@@ -41,7 +42,7 @@ def score_pixels(
     return scores
 
 
-@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
+@loop(fastmath=True, error_model="numpy")
 def add_neighbour(
     scores: np.ndarray, other: np.ndarray, down: int, across: int, bound: float, correlation: float,
     total: np.ndarray,

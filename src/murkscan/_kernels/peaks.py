@@ -1,7 +1,8 @@
 """Peaks across scan lines: where pixels rise above their surroundings on both sides."""
 
 import numpy as np
-from numba import njit
+
+from .compiled import loop, part
 
 _GAP = 2
 """Pixels in a row that may fail to rise within one peak."""
@@ -9,7 +10,7 @@ _FEWEST = 2
 """Pixels that must rise: a single one is a hot pixel, or noise."""
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _mark_risen(
     here: np.ndarray,
     before: tuple[np.ndarray, np.ndarray],
@@ -31,7 +32,7 @@ def _mark_risen(
         risen[u] = (top - side) > rise
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _mark_ends(
     row: np.ndarray, start: int, end: int, rise: int, far: int, near: int, risen: np.ndarray
 ) -> None:
@@ -43,7 +44,7 @@ def _mark_ends(
         risen[u] = np.int64(row[u]) - np.int64(max(left, right)) > rise
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _mark_row(
     image: np.ndarray, v: int, down: bool, rise: int, far: int, near: int, risen: np.ndarray
 ) -> None:
@@ -62,7 +63,7 @@ def _mark_row(
     _mark_ends(row, min(far + inner, width), width, rise, far, near, risen)
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def find_peaks(
     image: np.ndarray, down: bool, rise: int, far: int, near: int, most: int
 ) -> np.ndarray:

@@ -1,7 +1,8 @@
 """Stripes so bright that pixels are white: they have two edges and no peak."""
 
 import numpy as np
-from numba import njit
+
+from .compiled import loop, part
 
 _RUNGS = 5
 """Levels at which the edges are looked for."""
@@ -16,7 +17,7 @@ _FLANK = 12
 """Pixels within which a flank must sink to the lowest of them, and at least the plateau's width."""
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def find_plateaus(
     levels: np.ndarray, white: float, shortest: int, longest: int, most: int
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -45,7 +46,7 @@ def find_plateaus(
     return runs, counts
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def measure_plateaus(
     levels: np.ndarray, lines: np.ndarray, starts: np.ndarray, law: np.ndarray
 ) -> np.ndarray:
@@ -93,7 +94,7 @@ def measure_plateaus(
     return found
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _grow(column: np.ndarray, start: int, white: float) -> tuple[int, int]:
     """Find the first and the last white pixel around a start, over dark gaps of one pixel."""
     ends = [start, start]
@@ -110,7 +111,7 @@ def _grow(column: np.ndarray, start: int, white: float) -> tuple[int, int]:
     return ends[0], ends[1]
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _lowest(column: np.ndarray, start: int, way: int, far: int) -> float:
     """Find the lowest level on one side of a run."""
     lowest = float(column[start])
@@ -122,7 +123,7 @@ def _lowest(column: np.ndarray, start: int, way: int, far: int) -> float:
     return lowest
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _cross(column: np.ndarray, start: int, way: int, level: float) -> tuple[float, float]:
     """Find where a flank sinks below a level, and how steep it is there; 0 where it does not."""
     v = start

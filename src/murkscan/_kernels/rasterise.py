@@ -2,14 +2,15 @@
 
 import math
 
-import numba
 import numpy as np
+
+from .compiled import loop, part
 
 _EDGE = 1e-7
 """Samples by which a triangle's rows reach beyond its edges, so that neighbours leave no crack."""
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@loop(error_model="numpy")
 def cover_with_triangles(
     points: np.ndarray, faces: np.ndarray, depth: np.ndarray, owner: np.ndarray
 ) -> None:
@@ -50,7 +51,7 @@ def cover_with_triangles(
                     owner[row, column] = f
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@part(error_model="numpy")
 def _crossing(us: np.ndarray, vs: np.ndarray, row: int) -> tuple[float, float]:
     """Find between which columns a row crosses a triangle."""
     left, right = np.inf, -np.inf
@@ -68,7 +69,7 @@ def _crossing(us: np.ndarray, vs: np.ndarray, row: int) -> tuple[float, float]:
     return left, right
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@loop(error_model="numpy")
 def cover_with_discs(points: np.ndarray, radius: int, depth: np.ndarray, owner: np.ndarray) -> None:
     """Find the nearest point's disc in each sample.
 
@@ -89,7 +90,7 @@ def cover_with_discs(points: np.ndarray, radius: int, depth: np.ndarray, owner: 
                     owner[v, u] = i
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@loop(error_model="numpy")
 def turn_to_viewer(
     points: np.ndarray,
     faces: np.ndarray,
@@ -130,7 +131,7 @@ def turn_to_viewer(
         shown[i, 0], shown[i, 1], shown[i, 2] = turn * x, turn * y, turn * z
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@loop(error_model="numpy")
 def sum_at_corners(faces: np.ndarray, values: np.ndarray, sums: np.ndarray) -> None:
     """Add each triangle's vector to its three corners.
 
@@ -145,7 +146,7 @@ def sum_at_corners(faces: np.ndarray, values: np.ndarray, sums: np.ndarray) -> N
                 sums[faces[f, k], axis] += values[f, axis]
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@loop(error_model="numpy")
 def place_samples(
     seen: np.ndarray, depth: np.ndarray, world_from_samples: np.ndarray, points: np.ndarray
 ) -> None:
@@ -165,7 +166,7 @@ def place_samples(
             points[i, axis] = turn[0] * u + turn[1] * v + turn[2] * z + turn[3]
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@loop(error_model="numpy")
 def average_samples(
     seen: np.ndarray,
     paint: np.ndarray,

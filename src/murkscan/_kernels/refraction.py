@@ -7,7 +7,8 @@ order. Without interfaces a ray is what it was.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
+
+from .compiled import loop, part
 
 
 class Interfaces(NamedTuple):
@@ -22,7 +23,7 @@ class Interfaces(NamedTuple):
     """Refractive index inside, and behind each surface; one more than sizes."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@part(error_model="numpy", inline="always")
 def _refract(
     dx: float, dy: float, dz: float, nx: float, ny: float, nz: float, ratio: float
 ) -> tuple[float, float, float]:
@@ -32,7 +33,7 @@ def _refract(
     return ratio * dx + bend * nx, ratio * dy + bend * ny, ratio * dz + bend * nz
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@part(error_model="numpy")
 def trace_ray(
     dx: float, dy: float, dz: float, interfaces: Interfaces
 ) -> tuple[float, float, float, float, float, float]:
@@ -64,7 +65,7 @@ def trace_ray(
     return x, y, z, dx, dy, dz
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@loop(error_model="numpy")
 def trace_rays(directions: np.ndarray, interfaces: Interfaces) -> tuple[np.ndarray, np.ndarray]:
     """Follow unit directions (n 3) from the origin out of the last surface: starts, directions."""
     starts, leaving = np.empty_like(directions), np.empty_like(directions)
@@ -77,7 +78,7 @@ def trace_rays(directions: np.ndarray, interfaces: Interfaces) -> tuple[np.ndarr
     return starts, leaving
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@loop(error_model="numpy")
 def aim_through_planes(points: np.ndarray, interfaces: Interfaces) -> np.ndarray:
     """Directions (n 3) from the origin whose rays reach the points; NaN inside the last plane.
 
@@ -113,7 +114,7 @@ def aim_through_planes(points: np.ndarray, interfaces: Interfaces) -> np.ndarray
     return aims
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@part(error_model="numpy", inline="always")
 def _sweep(
     turn: float, eccentricity: float, distance: float, interfaces: Interfaces
 ) -> tuple[float, float]:
@@ -137,7 +138,7 @@ def _sweep(
     return angle, slope
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@loop(error_model="numpy")
 def aim_through_spheres(points: np.ndarray, interfaces: Interfaces) -> np.ndarray:
     """Directions (n 3) from the origin whose rays reach the points; NaN inside the last sphere.
 

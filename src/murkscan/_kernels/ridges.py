@@ -1,10 +1,11 @@
 """Places where a score is highest along its scan line, and what speaks for each of them."""
 
 import numpy as np
-from numba import njit
+
+from .compiled import loop, part
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def find_ridges(
     scores: np.ndarray, least: float, most: int, reach: int, lobe: float, margin: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -32,23 +33,22 @@ def find_ridges(
     return positions, heights, counts
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def merge_ridges(
     positions: np.ndarray, heights: np.ndarray, counts: np.ndarray, widths: np.ndarray,
-    narrow: float,
+    order: np.ndarray, narrow: float,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:  # fmt: skip
     """Choose one width for each ridge that answers several filters.
 
-    Ridges come by filter (filters, lines, most), each of a width [px]. A wide one is left out where
-    one of a narrower filter, within its width, is at least `narrow` times as high; elsewhere the
-    narrower ones within twice its width are its texture and its edges. Gives positions, heights,
-    counts and filters by line, the highest first.
+    Ridges come by filter (filters, lines, most), each of a width [px]; `order` lists the widest
+    first. A wide one is left out where one of a narrower filter, within its width, is at least
+    `narrow` times as high; elsewhere the narrower ones within twice its width are its texture and
+    its edges. Gives positions, heights, counts and filters by line, the highest first.
     """
     num_filters, num_lines, most = positions.shape
     out, tops = np.zeros((num_lines, most)), np.zeros((num_lines, most))
     which = np.zeros((num_lines, most), np.int8)
     number = np.zeros(num_lines, np.int64)
-    order = np.argsort(-widths)
     gone = np.zeros((num_filters, most), np.bool_)
     for u in range(num_lines):
         gone[:] = False
@@ -73,7 +73,7 @@ def merge_ridges(
     return out, tops, number, which
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _is_explained(
     wide: int, i: int, positions: np.ndarray, heights: np.ndarray, counts: np.ndarray,
     widths: np.ndarray, narrow: float, gone: np.ndarray,
@@ -94,7 +94,7 @@ def _is_explained(
     return False
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _insert_with(
     positions: np.ndarray, heights: np.ndarray, shapes: np.ndarray, count: int,
     position: float, height: float, shape: int,
@@ -112,7 +112,7 @@ def _insert_with(
     return count + 1
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _insert(
     positions: np.ndarray, heights: np.ndarray, count: int, position: float, height: float
 ) -> int:
@@ -129,7 +129,7 @@ def _insert(
     return count + 1
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _drop_lobes(
     positions: np.ndarray, heights: np.ndarray, count: int, reach: int, lobe: float
 ) -> int:
@@ -145,7 +145,7 @@ def _drop_lobes(
     return kept
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def compare_ridges(
     positions: np.ndarray, heights: np.ndarray, counts: np.ndarray, grains: np.ndarray,
     other_positions: np.ndarray, other_heights: np.ndarray, other_counts: np.ndarray,
@@ -170,7 +170,7 @@ def compare_ridges(
     return is_there
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def are_near(positions: np.ndarray, which: np.ndarray, distance: float) -> np.ndarray:
     """Tell which entries lie within a distance of one of some in their line (lines, most)."""
     near = np.zeros(positions.shape, np.bool_)
@@ -183,7 +183,7 @@ def are_near(positions: np.ndarray, which: np.ndarray, distance: float) -> np.nd
     return near
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def replace_near(
     positions: np.ndarray, heights: np.ndarray, counts: np.ndarray, shapes: np.ndarray,
     lines: np.ndarray, places: np.ndarray, tops: np.ndarray, reaches: np.ndarray, shape: int,
@@ -202,7 +202,7 @@ def replace_near(
         )
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def match_ridges(
     positions: np.ndarray, counts: np.ndarray, grains: np.ndarray,
     other_positions: np.ndarray, other_heights: np.ndarray, other_counts: np.ndarray,
@@ -222,7 +222,7 @@ def match_ridges(
     return found, away
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def pool_along(
     positions: np.ndarray, counts: np.ndarray, marks: np.ndarray, values: np.ndarray,
     reach: int, slope: float, gap: int,
@@ -258,7 +258,7 @@ def pool_along(
     return pooled
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def drop_hidden(
     positions: np.ndarray, heights: np.ndarray, counts: np.ndarray, shapes: np.ndarray,
     hidden: np.ndarray,

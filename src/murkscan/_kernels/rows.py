@@ -1,7 +1,8 @@
 """Noise that all pixels of a row have in common."""
 
 import numpy as np
-from numba import njit
+
+from .compiled import loop, part
 
 HALF = 4
 """Rows on both sides that a row is compared with."""
@@ -9,7 +10,7 @@ _FEWEST = 16
 """Pixels whose mean is known to a quarter of their noise."""
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def row_offsets(levels: np.ndarray, bound: np.ndarray) -> np.ndarray:
     """Estimate by how much each row is brighter than those around it.
 
@@ -39,7 +40,7 @@ def row_offsets(levels: np.ndarray, bound: np.ndarray) -> np.ndarray:
     return offsets
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _compare(levels: np.ndarray, bound: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Give each pixel's difference to the mean of its column around, and whether it is much."""
     length, width = levels.shape

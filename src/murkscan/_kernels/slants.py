@@ -1,9 +1,9 @@
 """How a stripe slants, and how its light changes, around each of its centres."""
 
 import numpy as np
-from numba import njit
 
 from .cholesky import first_variance, solve
+from .compiled import loop, part
 
 _FAR, _NEAR = 6, 3
 """Scan lines on both sides from which the slope, and the change of light, are told."""
@@ -15,7 +15,7 @@ _BEND = 0.25
 that the lens blurs by w falls as its Gaussian's integral, which bends by 0.64 / w² there."""
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def measure_slants(
     lines: np.ndarray, centres: np.ndarray, logs: np.ndarray, sigma: np.ndarray, step: float
 ) -> np.ndarray:
@@ -37,7 +37,7 @@ def measure_slants(
     return found
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _darken(i: int, lines: np.ndarray, logs: np.ndarray, near: np.ndarray) -> float:
     """Give by how much the brightest of the lines further in exceeds an end; 0: it is none."""
     dark = 0.0
@@ -55,7 +55,7 @@ def _darken(i: int, lines: np.ndarray, logs: np.ndarray, near: np.ndarray) -> fl
     return dark
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _follow(i: int, lines: np.ndarray, centres: np.ndarray, step: float, near: np.ndarray) -> int:
     """List the centres of the same surface around one, itself among them; give their number."""
     near[0] = i
@@ -78,7 +78,7 @@ def _follow(i: int, lines: np.ndarray, centres: np.ndarray, step: float, near: n
     return count
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _fit_slope(i: int, lines: np.ndarray, values: np.ndarray, near: np.ndarray) -> float:
     """Fit a straight line; give its slope."""
     n, x, y, xx, xy = 0.0, 0.0, 0.0, 0.0, 0.0
@@ -89,7 +89,7 @@ def _fit_slope(i: int, lines: np.ndarray, values: np.ndarray, near: np.ndarray) 
     return (xy - x * y / n) / spread if spread > 0.0 else 0.0
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _fit_change(
     i: int, lines: np.ndarray, logs: np.ndarray, sigma: np.ndarray, near: np.ndarray
 ) -> tuple[float, float]:

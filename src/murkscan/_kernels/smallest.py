@@ -1,13 +1,14 @@
 """The smallest of each pixel's levels over frames."""
 
 import numpy as np
-from numba import njit
+
+from .compiled import loop
 
 _TILE = 512
 """Pixels that are looked at together: those of fifty frames stay in the fastest memory."""
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def find_smallest(stack: np.ndarray, rank: int) -> np.ndarray:
     """Find for each pixel the level that `rank` of its levels come before (frames, pixels).
 
@@ -33,7 +34,7 @@ def find_smallest(stack: np.ndarray, rank: int) -> np.ndarray:
     return found
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def sum_smallest(stack: np.ndarray, number: int, largest: np.ndarray) -> np.ndarray:
     """Sum each pixel's `number` smallest levels, whose largest is known."""
     count, size = stack.shape

@@ -1,14 +1,15 @@
 """Local quadratic fits along chains of points, each as long as its own noise lets it be."""
 
-import numba
 import numpy as np
+
+from .compiled import loop, part
 
 _NONE = -1
 _FEWEST = 5
 """Points below which a parabola says nothing that the point itself does not."""
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@loop(error_model="numpy")
 def fit_heights(
     points: np.ndarray,
     normals: np.ndarray,
@@ -44,7 +45,7 @@ def fit_heights(
     return heights
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@part(error_model="numpy")
 def _fit_one(
     i: int,
     points: np.ndarray,
@@ -101,7 +102,7 @@ def _fit_one(
     return height
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@part(error_model="numpy")
 def _solve(
     s0: float, s1: float, s2: float, s3: float, s4: float,
     t0: float, t1: float, t2: float, hh: float,

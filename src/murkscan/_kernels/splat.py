@@ -3,8 +3,9 @@
 import math
 from typing import NamedTuple
 
-import numba
 import numpy as np
+
+from .compiled import loop, part
 
 _REACH = 5.0
 """Standard deviations beyond which nothing is drawn: 6e-7 of the light lies there."""
@@ -21,7 +22,7 @@ class LineSplats(NamedTuple):
     """Light times pixels, f8."""
 
 
-@numba.njit(cache=True, nogil=True)
+@loop()
 def splat_on_lines(splats: LineSplats, sigma: float, image: np.ndarray, slope: np.ndarray) -> None:
     """Add bits of light to an image whose rows are scan lines, and their derivative to another.
 
@@ -51,7 +52,7 @@ def splat_on_lines(splats: LineSplats, sigma: float, image: np.ndarray, slope: n
             share, height = next_share, next_height
 
 
-@numba.njit(cache=True, nogil=True)
+@loop()
 def splat_discs(
     pixels: np.ndarray, sigmas: np.ndarray, amounts: np.ndarray, image: np.ndarray
 ) -> None:
@@ -78,7 +79,7 @@ def splat_discs(
                 image[row, column] += amount * across[column]
 
 
-@numba.njit(cache=True, nogil=True)
+@part()
 def _share_out(at: float, reach: int, scale: float, shares: np.ndarray) -> tuple[int, int]:
     """Write which share of a Gaussian falls on each pixel of a line; give the first and the last.
 

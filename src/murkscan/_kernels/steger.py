@@ -1,8 +1,8 @@
 """Ridges by Steger's method, at given peaks."""
 
 import numpy as np
-from numba import njit
 
+from .compiled import loop, part
 from .gray_gravity import side_level
 
 _MOVES = 4
@@ -13,7 +13,7 @@ _WITHIN = 0.6
 """How far from its pixel's middle the ridge may lie [px]: a little more than half."""
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _respond(image: np.ndarray, u: int, v: int, derivatives: np.ndarray, r: np.ndarray) -> None:
     """Fill r with the derivatives x, y, xx, xy, yy of the smoothed picture at a pixel."""
     height, width = image.shape
@@ -27,7 +27,7 @@ def _respond(image: np.ndarray, u: int, v: int, derivatives: np.ndarray, r: np.n
                 r[d] += derivatives[d, j, k] * level
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _across(r: np.ndarray) -> tuple[float, float, float]:
     """Most negative curvature, and the unit vector across the ridge; 0 where there is no ridge."""
     half, gap = 0.5 * (r[2] + r[4]), 0.5 * (r[2] - r[4])
@@ -41,7 +41,7 @@ def _across(r: np.ndarray) -> tuple[float, float, float]:
     return curve, nx / length, ny / length
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def find_ridges(
     image: np.ndarray, peaks: np.ndarray, down: bool, derivatives: np.ndarray, noise: float
 ) -> np.ndarray:

@@ -1,9 +1,9 @@
 """A stripe with a core and a skirt on a curved background, fitted by maximum likelihood."""
 
 import numpy as np
-from numba import njit
 
 from .cholesky import first_variance, solve
+from .compiled import loop, part
 
 _SIZE = 7
 """Parameters: centre, height, log of the core's width, skirt's share, background, its slope, its
@@ -15,7 +15,7 @@ _GLARE = 8.0
 """White pixels, in widths of the core, from which a stripe is lost in glare."""
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def spread_skirts(
     levels: np.ndarray, lines: np.ndarray, starts: np.ndarray, half: int,
     along: float, across: float,
@@ -31,8 +31,11 @@ def spread_skirts(
     for i in range(len(lines)):
         heights[i] = _rise(levels, lines[i], int(np.rint(starts[i])), half)
     reach = int(np.ceil(3.0 * across))
-    weights = np.exp(-0.5 * (np.arange(reach + 1) / across) ** 2)
-    weights /= 2.0 * weights.sum() - weights[0]
+    weights, total = np.empty(reach + 1), 0.0
+    for i in range(reach + 1):
+        weights[i] = np.exp(-0.5 * (i / across) ** 2)
+        total += weights[i]
+    weights /= 2.0 * total - weights[0]
     first = 0
     for i in range(len(lines)):
         middle = int(np.rint(starts[i]))
@@ -48,7 +51,7 @@ def spread_skirts(
     return skirts
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _add_bell(profile: np.ndarray, height: float, first: float, step: float) -> None:
     """Add height · exp(-x² / 2) at x = first, first + step, …, by products alone."""
     value = height * np.exp(-0.5 * first * first)
@@ -60,7 +63,7 @@ def _add_bell(profile: np.ndarray, height: float, first: float, step: float) -> 
         ratio *= change
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _rise(levels: np.ndarray, line: int, middle: int, half: int) -> float:
     """Give how far a stripe's middle rises above its window's ends; at least one level."""
     last = len(levels) - 1
@@ -71,7 +74,7 @@ def _rise(levels: np.ndarray, line: int, middle: int, half: int) -> float:
     return max(top - 0.5 * (float(levels[low, line]) + float(levels[high, line])), 1.0)
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def fit_stripes(
     levels: np.ndarray, signal: np.ndarray, lines: np.ndarray, starts: np.ndarray,
     skirts: np.ndarray, noise: np.ndarray, shape: np.ndarray,
@@ -118,7 +121,7 @@ def fit_stripes(
     return found
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _begin(scan: np.ndarray, middle: int, off: float, shape: np.ndarray, p: np.ndarray) -> None:
     """Start with the background's straight line between the window's ends."""
     n = len(scan)
@@ -133,7 +136,7 @@ def _begin(scan: np.ndarray, middle: int, off: float, shape: np.ndarray, p: np.n
     p[4], p[5], p[6] = base, slope, 0.0
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _take_step(p: np.ndarray, step: np.ndarray) -> None:
     """Add the step, no longer than a fit can be trusted over."""
     step[0] = min(max(step[0], -0.5), 0.5)
@@ -143,7 +146,7 @@ def _take_step(p: np.ndarray, step: np.ndarray) -> None:
     p[1] = max(p[1], 0.05)
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _dot(first: np.ndarray, second: np.ndarray, count: int) -> float:
     total = 0.0
     for v in range(count):
@@ -151,7 +154,7 @@ def _dot(first: np.ndarray, second: np.ndarray, count: int) -> float:
     return total
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@part(error_model="numpy")
 def _normal_equations(
     raw: np.ndarray, scan: np.ndarray, skirt: np.ndarray, middle: int, p: np.ndarray,
     noise: np.ndarray, shape: np.ndarray, matrix: np.ndarray, right: np.ndarray, rows: np.ndarray,
@@ -189,7 +192,7 @@ def _normal_equations(
     return count >= _FEWEST
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _add_priors(p: np.ndarray, shape: np.ndarray, matrix: np.ndarray, right: np.ndarray) -> None:
     """Hold width and skirt near what was learnt, and let the background bend no more than a foot.
 

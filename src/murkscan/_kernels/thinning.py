@@ -1,7 +1,8 @@
 """Zhang-Suen thinning by a list of the pixels whose neighbourhood has changed."""
 
 import numpy as np
-from numba import njit
+
+from .compiled import loop
 
 
 def _deletion_tables() -> np.ndarray:
@@ -23,7 +24,7 @@ def _deletion_tables() -> np.ndarray:
 _TABLES = _deletion_tables()
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def _thin(flat: np.ndarray, width: int, start: np.ndarray, tables: np.ndarray) -> None:
     """Thin a flat image whose outermost pixels are never looked at, in place.
 
@@ -37,7 +38,8 @@ def _thin(flat: np.ndarray, width: int, start: np.ndarray, tables: np.ndarray) -
     counts = np.zeros((2, 2), np.int64)
     doomed = np.empty(len(start), np.int64)
     for k in range(2):
-        lists[k, 0, : len(start)] = start
+        for i in range(len(start)):
+            lists[k, 0, i] = start[i]
         counts[k, 0] = len(start)
     turn = np.zeros(2, np.int64)
     while counts[0, turn[0]] > 0 or counts[1, turn[1]] > 0:

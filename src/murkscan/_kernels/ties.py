@@ -1,10 +1,11 @@
 """The normal equations of many equations that each join two moments of two ways."""
 
-import numba
 import numpy as np
 
+from .compiled import loop
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+
+@loop(error_model="numpy")
 def sum_groups(
     starts: np.ndarray,
     slopes_a: np.ndarray,
@@ -54,7 +55,7 @@ def sum_groups(
     return matrix, vector
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@loop(error_model="numpy")
 def sum_vectors(
     starts: np.ndarray,
     slopes_a: np.ndarray,

@@ -1,10 +1,11 @@
 """Find a piece of one relief in another by normalised correlation."""
 
-import numba
 import numpy as np
 
+from .compiled import loop
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+
+@loop(error_model="numpy")
 def draw_relief(
     along: np.ndarray,
     across: np.ndarray,
@@ -39,7 +40,7 @@ def draw_relief(
     return relief
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@loop(error_model="numpy")
 def correlate(tile: np.ndarray, relief: np.ndarray, least: int) -> np.ndarray:
     """Correlate a tile with each piece of a larger relief, over the pixels that both have.
 

@@ -1,16 +1,17 @@
 """Smooth random fields: random values at the corners of grids, blended in between."""
 
 import numpy as np
-from numba import njit
+
+from .compiled import loop, part
 
 
-@njit(cache=True, nogil=True, inline="always")
+@part(inline="always")
 def _blend(t: float) -> float:
     """Go from 0 to 1 with two derivatives that vanish at both ends."""
     return t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@loop(error_model="numpy")
 def value_noise(
     points: np.ndarray,
     axes: np.ndarray,

@@ -1,10 +1,11 @@
 """Areas of white pixels that touch one another."""
 
 import numpy as np
-from numba import njit
+
+from .compiled import loop, part
 
 
-@njit(cache=True, nogil=True)
+@loop()
 def box_white_areas(levels: np.ndarray, white: float) -> np.ndarray:
     """Give the box of each area that touches itself, also at corners, and its number of pixels.
 
@@ -25,11 +26,12 @@ def box_white_areas(levels: np.ndarray, white: float) -> np.ndarray:
                 boxes.append(_grow(is_new, waiting))
     found = np.zeros((len(boxes), 5), np.int64)
     for i in range(len(boxes)):
-        found[i] = boxes[i]
+        for k in range(5):
+            found[i, k] = boxes[i][k]
     return found
 
 
-@njit(cache=True, nogil=True)
+@part()
 def _grow(is_new: np.ndarray, waiting: "list[tuple[int, int]]") -> np.ndarray:
     """Take all that is reached from what waits; give its box and its size."""
     height, width = is_new.shape

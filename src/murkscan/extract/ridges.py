@@ -217,7 +217,9 @@ def find_frame_ridges(near: Mapping[int, Scored], bank: FilterBank) -> Ridges:
     else:
         widths = np.array([each.width * each.binning for each in bank.filters])
         stacked = [np.stack(column) for column in zip(*parts, strict=True)]
-        positions, heights, counts, shapes = merge_ridges(*stacked, widths, _NARROW)
+        positions, heights, counts, shapes = merge_ridges(
+            *stacked, widths, np.argsort(-widths), _NARROW
+        )
     _add_plateaus(own.lines, bank, positions, heights, counts, shapes)
     if own.lines.hidden is not None:
         drop_hidden(positions, heights, counts, shapes, own.lines.hidden)
