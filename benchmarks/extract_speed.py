@@ -1,4 +1,4 @@
-"""How many pictures a second `murkscan extract` gets through, and the memory that it holds."""
+"""How many pictures a second `murkscan extract` gets through, and how long a whole scan takes."""
 
 import os
 import subprocess
@@ -22,9 +22,11 @@ The command as a user runs it, from the first import to the last file, on two co
 decoding, learning the recording, finding the stripe, drawing a dozen overlays. The hull in water of
 3 /m, with glow, particles and noise; PAL as H.264 of 760 fields, 1920 × 1200 as 120 PNG pictures,
 of which learning, which looks at 48 of them however many there are, is the larger part, and as the
-same pictures four times over. The loops have been compiled before. Beside each, the same by gray
-gravity, which learns next to nothing: what is left is start, reading and writing. The processor's
-time is that of all cores; where others use them, it says more than the time that passes.
+same pictures four times over. A whole scan of the PAL fields is `murkscan scan`, with its surface,
+nine pictures, the page to turn it on and the report. The loops have been compiled before. Beside
+each, the same by gray gravity, which learns next to nothing: what is left is start, reading and
+writing. The processor's time is that of all cores; where others use them, it says more than the
+time that passes.
 """
 TIMES = 4
 """How often the same pictures come in the longer recording."""
@@ -66,10 +68,20 @@ def repeat(frames: Path, out: Path) -> Path:
     return folder
 
 
-def run(recording: Path, out: Path, extractor: str) -> Run:
-    """Run the command."""
+def extract(recording: Path, out: Path, extractor: str) -> Run:
+    """Run `murkscan extract`."""
     rig = recording.parent / "rig.toml"
-    words = ["extract", recording, "--rig", rig, "--out", out, "--extractor", extractor]
+    return run("extract", recording, "--rig", rig, "--out", out, "--extractor", extractor)
+
+
+def scan(recording: Path, out: Path) -> Run:
+    """Run `murkscan scan`: from the first import to the page on how it went."""
+    rig, poses = (recording.parent / name for name in ("rig.toml", "poses.csv"))
+    return run("scan", recording, "--rig", rig, "--poses", poses, "--out", out)
+
+
+def run(*words: str | Path) -> Run:
+    """Run a command."""
     command = [sys.executable, "-m", "murkscan", *map(str, words)]
     since, before, peak = time.perf_counter(), os.times(), 0.0
     with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
@@ -117,6 +129,13 @@ def main() -> None:
         ):
             rate = extract_alone(recording) / each
             figures.append(Figure(f"{name}: finding alone, a core", rate, "/s", at_least=least))
+        scan(field, field.parent / "first-scan")
+        whole = scan(field, field.parent / "scan")
+        figures += [
+            Figure("760 PAL fields of H.264: a whole scan", whole.passed, "s", at_most=20),
+            Figure("760 PAL fields of H.264: its processor's time", whole.spent, "s"),
+            Figure("760 PAL fields of H.264: its resident", whole.resident, "MB"),
+        ]
         for name, recording, count, rate, most in (
             ("PAL fields of H.264", field, 760, 100, None),
             ("1920 × 1200 PNG", large, 120, 24, 700),
@@ -124,9 +143,9 @@ def main() -> None:
         ):
             out = recording.parent
             if recording != long:
-                run(recording, out / "first", "murk")
-            murk = run(recording, out / "murk", "murk")
-            gray = run(recording, out / "gray", "gray-gravity")
+                extract(recording, out / "first", "murk")
+            murk = extract(recording, out / "murk", "murk")
+            gray = extract(recording, out / "gray", "gray-gravity")
             figures += [
                 Figure(f"{name}: by murk", count / murk.passed, "/s", at_least=rate),
                 Figure(f"{name}: by gray gravity", count / gray.passed, "/s"),
