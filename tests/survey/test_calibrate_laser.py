@@ -11,7 +11,7 @@ from murkscan.calibrate.adjust.observations import index_of
 from murkscan.errors import InputError, MissingResult, NotEnoughData
 from murkscan.io.images import read_colour, write_image
 from murkscan.io.rig_toml import load_rig, save_rig
-from murkscan.optics import back_project, distance_to_sheet, equivalent_plane
+from murkscan.optics import distance_to_sheet, equivalent_plane
 from murkscan.survey.calibrate_laser import FanKnowledge, calibrate_laser_from_photos
 from murkscan.types.laser import Fan, Laser
 from murkscan.types.plane import Plane
@@ -19,7 +19,7 @@ from murkscan.types.port import FlatPort
 from murkscan.types.pose import Pose
 from murkscan.types.rig_covariance import RigCovariance
 
-from .test_calibrate_port import BOARD, LENS, PORT, RIG, hold, render
+from .test_calibrate_port import BOARD, LENS, PORT, RIG, hold, rays_through_port, render
 
 AHEAD = np.array([0.2, 0.0, 1.0]) / np.hypot(0.2, 1.0)
 SHEET = Plane.through(np.array([-0.12, 0.0, 0.0]), np.cross(AHEAD, [0.0, 1.0, 0.0]))
@@ -34,9 +34,7 @@ DEPTHS = (0.47, 0.6, 0.8)
 def light(camera_from_board, rig):
     """Photograph the board, and the line on it: a green ridge of 1.5 mm."""
     width, height = LENS.size
-    v, u = np.mgrid[:height, :width]
-    pixels = np.stack([u.ravel(), v.ravel()], axis=1).astype(float)
-    rays = back_project(LENS, pixels, index_of(rig))
+    rays = rays_through_port(1)
     normal, middle = camera_from_board.rotation[:, 2], camera_from_board.translation
     reach = ((middle - rays.origins) @ normal) / (rays.directions @ normal)
     off = distance_to_sheet(

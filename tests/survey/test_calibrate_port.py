@@ -1,5 +1,6 @@
 import tomllib
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -29,12 +30,20 @@ RIG = Rig(LENS, water=Water(20.0, 0.0), covariance=KNOWN)
 TILTS = [(25, 0), (-25, 5), (0, 30), (5, -30), (18, 20), (-20, -20), (20, -22), (-15, 25)]
 
 
+@cache
+def rays_through_port(number):
+    """Trace number × number rays of each pixel, which all photos share."""
+    width, height = LENS.size
+    v, u = np.mgrid[: number * height, : number * width]
+    pixels = (np.stack([u.ravel(), v.ravel()], axis=1) + 0.5) / number - 0.5
+    return back_project(LENS, pixels, index_of(RIG))
+
+
+@cache
 def render(camera_from_board):
     """Photograph the board through the port: the level of each pixel's square, of 3 x 3 rays."""
     width, height = LENS.size
-    v, u = np.mgrid[: 3 * height, : 3 * width]
-    pixels = (np.stack([u.ravel(), v.ravel()], axis=1) + 0.5) / 3 - 0.5
-    rays = back_project(LENS, pixels, index_of(RIG))
+    rays = rays_through_port(3)
     normal, middle = camera_from_board.rotation[:, 2], camera_from_board.translation
     reach = ((middle - rays.origins) @ normal) / (rays.directions @ normal)
     points = camera_from_board.inverse() @ (rays.origins + reach[:, None] * rays.directions)
@@ -45,6 +54,7 @@ def render(camera_from_board):
     return np.repeat(level[:, :, None], 3, axis=2).astype(np.uint8)
 
 
+@cache
 def hold(tilt, number, depths):
     turned = rotation(*tilt, 0)
     depth = depths[number % len(depths)]

@@ -20,6 +20,9 @@ from murkscan.simulate import parse_scene
 from murkscan.survey.cloud import build_cloud
 from murkscan.survey.demo import Errors, run_demo
 from murkscan.survey.extract import extract_recording
+from murkscan.survey.motion import follow_motion
+from murkscan.survey.scan import begin_scan
+from murkscan.survey.triangulate import triangulate_stripes
 
 from ..scenes import HULL_SPEED
 
@@ -46,6 +49,17 @@ MADE = [
 def _open(hull):
     rig = ms.load_rig(hull / "rig.toml")
     return ms.open_recording(hull / "frames", wavelength=rig.wavelength), rig
+
+
+def _make_cloud(recording, rig, out, motion=MOTION, extractor=None):
+    """Run a scan's stages up to the cloud, as far as most tests look."""
+    project = ms.Project(out)
+    begin_scan(project, recording, rig, settings={})
+    extract_recording(project, recording, rig, extractor or ms.Murk())
+    triangulate_stripes(project, rig, ms.RaySheet())
+    follow_motion(project, motion)
+    build_cloud(project, rig)
+    return project
 
 
 @pytest.fixture(scope="module")
@@ -112,7 +126,7 @@ def test_a_stopped_scan_goes_on_at_its_first_missing_part(scanned, hull, tmp_pat
         ms.scan(recording, rig, MOTION, out=tmp_path / "out", progress=stop)
     first = tmp_path / "out/extract/stripes/000000.parquet"
     written = first.stat().st_mtime_ns
-    project = ms.scan(recording, rig, MOTION, out=tmp_path / "out")
+    project = _make_cloud(recording, rig, tmp_path / "out")
     assert first.stat().st_mtime_ns == written
     again = (project.root / "cloud/cloud.ply").read_bytes()
     assert again == (scanned.root / "cloud/cloud.ply").read_bytes()
@@ -161,7 +175,7 @@ def test_a_full_disk_is_one_sentence_and_nothing_finished_is_lost(scanned, hull,
     assert "cloud.ply" in limited.stderr
     assert not list((out / "cloud").glob(".*part*"))
     written = (out / "extract/stripes/000000.parquet").stat().st_mtime_ns
-    ms.scan(*_open(hull), MOTION, out=out)
+    _make_cloud(*_open(hull), out)
     assert (out / "extract/stripes/000000.parquet").stat().st_mtime_ns == written
     again = (out / "cloud/cloud.ply").read_bytes()
     assert again == (scanned.root / "cloud/cloud.ply").read_bytes()
@@ -202,7 +216,7 @@ def test_a_corrupt_picture_in_the_middle_is_skipped_and_counted(hull, tmp_path):
     (tmp_path / "frames/000070.png").write_bytes(b"not a picture")
     rig = ms.load_rig(hull / "rig.toml")
     recording = ms.open_recording(tmp_path / "frames", wavelength=rig.wavelength)
-    project = ms.scan(recording, rig, MOTION, out=tmp_path / "out")
+    project = _make_cloud(recording, rig, tmp_path / "out")
     counts = project.finished(EXTRACT).result
     assert (counts.frames, counts.skipped) == (129, 1)
     assert "000070.png" in counts.skips[0][2]
@@ -234,9 +248,10 @@ def test_another_rate_gives_other_times(hull, tmp_path):
         shutil.copy(hull / "frames" / f"{i:06d}.png", tmp_path / "frames")
     rig = ms.load_rig(hull / "rig.toml")
     untimed = ms.open_recording(tmp_path / "frames", fps=None)
-    ms.scan(untimed, rig, ms.ConstantStep(0.01, "y"), out=tmp_path / "out")
+    finder = ms.GrayGravity()
+    _make_cloud(untimed, rig, tmp_path / "out", ms.ConstantStep(0.01, "y"), finder)
     timed = ms.open_recording(tmp_path / "frames", fps=4.0)
-    project = ms.scan(timed, rig, ms.ConstantSpeed(0.1, "y"), out=tmp_path / "out")
+    project = _make_cloud(timed, rig, tmp_path / "out", ms.ConstantSpeed(0.1, "y"), finder)
     assert np.ptp(project.load_trajectory().times) == pytest.approx(19 / 4)
     assert np.ptp(project.load_trajectory().positions[:, 1]) == pytest.approx(0.1 * 19 / 4)
 
