@@ -2,11 +2,12 @@
 
 import math
 
-import numba
 import numpy as np
 
+from .compiled import loop, part
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+
+@loop(error_model="numpy")
 def evaluate_poses(
     piece: np.ndarray,
     along: np.ndarray,
@@ -60,7 +61,7 @@ def evaluate_poses(
     return weights, places, rotations, turned_by
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@loop(error_model="numpy")
 def lever_points(
     positions: np.ndarray,
     rotations: np.ndarray,
@@ -97,7 +98,7 @@ def lever_points(
     return place, slopes
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@part(error_model="numpy")
 def _weigh(s: float, weights: np.ndarray) -> None:
     """Give the weights of a uniform cubic B-spline (de Boor 1978, chapter IX)."""
     weights[0] = (1 - s) ** 3 / 6
@@ -106,7 +107,7 @@ def _weigh(s: float, weights: np.ndarray) -> None:
     weights[3] = s**3 / 6
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@part(error_model="numpy")
 def _turn_further(
     w: float, x: float, y: float, z: float, share: float, step: np.ndarray
 ) -> tuple[float, float, float, float]:
@@ -124,7 +125,7 @@ def _turn_further(
     )
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@part(error_model="numpy")
 def _as_matrix(w: float, x: float, y: float, z: float, matrix: np.ndarray) -> None:
     """Give the matrix of a unit quaternion."""
     matrix[0, 0], matrix[1, 1] = 1 - 2 * (y * y + z * z), 1 - 2 * (x * x + z * z)
@@ -134,7 +135,7 @@ def _as_matrix(w: float, x: float, y: float, z: float, matrix: np.ndarray) -> No
     matrix[1, 2], matrix[2, 1] = 2 * (y * z - x * w), 2 * (y * z + x * w)
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@part(error_model="numpy")
 def _turn_all(
     p: float, q: float, r: float, reached: np.ndarray, rotation: np.ndarray, turned_by: np.ndarray
 ) -> None:
@@ -152,7 +153,7 @@ def _turn_all(
             )
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@part(error_model="numpy")
 def _add_up(
     p: float, q: float, r: float, one: float, skew: float, outer: float, matrix: np.ndarray
 ) -> None:
