@@ -1,16 +1,18 @@
 """What nobody knows of light and lens is stated as large as it moves a fit."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from murkscan.geometry.shape_fit import ShapeFit
+from murkscan.geometry.shape_fit import ShapeFit, refine_shape
 from murkscan.geometry.sphere_fit import fit_sphere
 from murkscan.io.cloud_columns import from_columns
 from murkscan.measure import Sample
 from murkscan.measure.trust import moves_of_formula, moves_of_light, trust_fit
 from murkscan.types.sphere import Sphere
 
-from ..balls import AWAY, RISE, scan_ball
+from ..balls import AWAY, RADIUS, RISE, scan_ball
 
 BLUR, THICKNESS = 1.5e-3 / AWAY, 6e-8**0.5
 
@@ -38,8 +40,8 @@ def change_of(fit: ShapeFit[Sphere], usual: ShapeFit[Sphere]) -> np.ndarray:
 
 @pytest.mark.parametrize(
     ("column", "drawn"),
-    [(0, {"loss": 0.0}), (0, {"loss": 6.0}), (1, {"thickness": 1e-5}),
-     (1, {"thickness": 2**0.5 * THICKNESS})],
+    [(1, {"loss": 0.0}), (1, {"loss": 6.0}), (2, {"thickness": 1e-5}),
+     (2, {"thickness": 2**0.5 * THICKNESS})],
 )  # fmt: skip
 def test_water_and_sheet_move_a_ball_by_what_is_stated_at_one_sigma(usual, column, drawn):
     fit, _ = fit_drawn(**{"blur": BLUR, "thickness": THICKNESS} | drawn)
@@ -48,6 +50,18 @@ def test_water_and_sheet_move_a_ball_by_what_is_stated_at_one_sigma(usual, colum
     change *= np.sign(change @ told)
     # The next order is a fifth of them.
     np.testing.assert_allclose(change, told, rtol=0.3, atol=8e-7)
+
+
+def test_a_skirt_of_the_lens_moves_a_ball_by_what_is_stated_where_its_blur_is_held(usual):
+    """A fiftieth of the light in a skirt three times as wide, and a fit that knows no blur."""
+    lens = {"blur": BLUR, "thickness": THICKNESS}
+    plain, skirted = (scan_ball(**lens, skirt=share)[1] for share in (0.0, 0.02))
+    start = Sphere(np.array([0.0, 0.0, AWAY]), RADIUS)
+    fits = [refine_shape(start, points, reach=np.inf) for points in (skirted, plain)]
+    fit, sample = usual
+    told = moves_of_light(replace(fit, inliers=np.ones_like(fit.inliers)), sample)[:4, 0]
+    # Half or twice as much would be off by more than a third of what is found.
+    np.testing.assert_allclose(change_of(*fits), told, rtol=0.35, atol=8e-7)
 
 
 def test_all_of_it_is_in_the_uncertainty(usual):

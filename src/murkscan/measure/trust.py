@@ -144,22 +144,31 @@ def moves_of_formula(fit: ShapeFit[AnyShape], sample: Sample) -> Float[np.ndarra
     return _follow(fit.slopes[inside], off)
 
 
-def moves_of_light(fit: ShapeFit[AnyShape], sample: Sample) -> Float[np.ndarray, "p 2"]:
-    """Give how a fit's parameters move with what nobody knows of the light, at 1σ each.
+def moves_of_light(fit: ShapeFit[AnyShape], sample: Sample) -> Float[np.ndarray, "p 3"]:
+    """Give how a fit's parameters move with what nobody knows of light and lens, at 1σ each.
 
-    The columns are: what the water takes of the light, and the sheet's thickness. Neither moves
-    anything where it is not known from where points were seen.
+    The columns are: what the blur's formula leaves open at all parts alike, what the water takes of
+    the light, and the sheet's thickness. None of it moves anything where it is not known from where
+    points were seen.
 
     Args:
         fit: The fit to the sample's points.
         sample: The points that were fitted.
     """
-    inside = fit.inliers
+    inside, parameters = fit.inliers, fit.slopes.shape[1]
+    moves = np.zeros((parameters, 3))
     if sample.sight is None:
-        return np.zeros((fit.slopes.shape[1], 2))
+        return moves
+    own = _count_own(fit, sample)
     seen = fit.shape, sample.cloud.points[inside], sample.sight[inside]
+    if parameters > own:
+        # Of a lens that blurs in another way, the blur that is fitted takes up what it can: it is
+        # held here, so that all of its effect counts.
+        by_blur = _BLUR_MODEL * fit.blur * fit.slopes[inside, own:]
+        moves[:own, :1] = _follow(fit.slopes[inside, :own], -by_blur)
     off = np.stack([loss_moves(*seen, fit.blur), sheet_moves(*seen)], axis=1)
-    return _follow(fit.slopes[inside], off)
+    moves[:, 1:] = _follow(fit.slopes[inside], off)
+    return moves
 
 
 def _follow(slopes: Slopes, off: Float[np.ndarray, "n modes"]) -> Float[np.ndarray, "p modes"]:
