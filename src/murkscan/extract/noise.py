@@ -116,8 +116,14 @@ _ENOUGH = 10_000_000
 """Pixels that tell the law as well as more would: those of 48 PAL fields."""
 _DARKER = 0.85
 """Share of white below which pixels tell."""
-_LAGS = (1, 8)
-"""Distances of the pixels whose differences are taken: neighbours, and those of other blocks."""
+_LAGS = (1, 2, 4, 8)
+"""Distances of the pixels whose differences are taken: neighbours, the next, those that share no
+noise where a camera has filled in the colours of a mosaic, and those of other blocks of an
+encoder."""
+_SHARED = 1.5
+"""Ratio of the noise of next pixels to that of neighbours from which neighbours share it: 2.1 where
+a mosaic's colours were filled in, 1.03 and less in grey pictures, with or without texture
+(benchmarks/murk.py, c3 and lamp rows)."""
 _SMOOTHED = 2.0
 """Ratio of the noise of far pixels to that of near ones, which then is less than rounding alone
 gives, from which an encoder has smoothed it away."""
@@ -144,10 +150,11 @@ def learn_levels(images: Pictures) -> Noise:
     white = _learn_white(np.sum(counts, axis=0))
     every = _row_step(images)
     level = float(np.median([quantile_of_counts(own, 0.5) for own in counts]))
-    near, far = (_learn_law(images, white, lag, every) for lag in _LAGS)
-    seen, beyond = (law.fixed + law.gain * level for law in (near, far))
-    is_smoothed = seen < _QUANTISATION**2 and beyond > _SMOOTHED * seen
-    return replace(far, least=_STEP) if is_smoothed else near
+    laws = [_learn_law(images, white, lag, every) for lag in _LAGS]
+    near, beside, _, far = (law.fixed + law.gain * level for law in laws)
+    if near < _QUANTISATION**2 and far > _SMOOTHED * near:
+        return replace(laws[3], least=_STEP)
+    return laws[2] if beside > _SHARED * near else laws[0]
 
 
 def _learn_law(images: Pictures, white: float, lag: int, every: int) -> Noise:
