@@ -300,3 +300,14 @@ def test_a_faint_stripe_on_a_lit_textured_wall_keeps_its_width():
     off = np.abs(_errors(stripes, lambda i: 80.0 + 0.4 * i + 0 * LINES))
     assert np.sum(off < 1.5) > 0.9 * 24 * LENGTH
     assert np.mean(off < 1.5) > 0.97
+
+
+def test_faint_lines_that_pass_beside_a_still_stripe_do_not_make_it_a_flaw_of_the_picture():
+    """In a lamp's light paint has edges everywhere; a stripe that keeps still is far brighter."""
+    rng = np.random.default_rng(11)
+    paint = np.repeat(1.0 + 0.2 * rng.standard_normal((24, LENGTH // 12)), 12, axis=1)
+    edges = [_line(40.0 + 1.5 * i + 0 * LINES, 14.0) for i in range(24)]
+    still = _line(110.0 + 0 * LINES, 120.0)
+    light = [60.0 + edge + height * still for edge, height in zip(edges, paint, strict=True)]
+    off = np.concatenate([s.pixels[:, 1] - 110.0 for s in _extract(_film(light))])
+    assert np.sum(np.abs(off) < 1.5) > 0.97 * 24 * LENGTH

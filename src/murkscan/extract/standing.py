@@ -41,6 +41,10 @@ elsewhere in the scan line while the thing is in its place, and while it is not.
 two places of a scan line beside an occlusion only."""
 _SURE = 0.9
 """Posterior from which a frame surely has its stripe elsewhere."""
+_WEAK = 1 / 3
+"""Share of a standing thing's height below which what is elsewhere tells nothing of it: texture and
+edges in a lamp's light beside a stripe that keeps still. A ghost of 40 grey levels is 2.7 times as
+high as the stripe at c = 5 /m (benchmarks/murk.py, c5-clutter), and has to be told."""
 _MOST_TOLD, _STEADY = 3.0, 2.0
 """Bound of the logarithm of the ratio that one ridge tells, what one e-fold of flicker tells."""
 _FLICKER, _MOST_FLICKER = 0.1, 0.5
@@ -191,4 +195,5 @@ class Standing:
         places = self.ridges.positions, heights, self.ridges.counts
         own = match_ridges(frame.positions, frame.counts, frame.grains, *places, 2.0)[0] > 0
         posterior = markov.follow_some(frame, ~frame.are_within(own, frame.reach))
-        return np.any(posterior > _SURE, axis=1)
+        is_high = frame.heights > _WEAK * heights.max(axis=1, initial=0.0)[:, None]
+        return np.any((posterior > _SURE) & is_high, axis=1)
