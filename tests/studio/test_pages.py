@@ -156,3 +156,11 @@ def test_a_command_tells_a_program_how_far_it_is_in_lines(capfd, monkeypatch):
     line = capfd.readouterr().err
     assert read_progress(line) == ("extract", 3, 10)
     assert read_progress("murkscan: no") is None
+
+
+def test_records_of_calibrations_are_no_rigs_to_work_with(folder, ask):
+    for name in ("rig.toml", "calibrate/records/20261130T120000Z-camera.toml"):
+        (folder / "quay" / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / "quay" / name).write_text("format = 1\n[camera]\n", "utf-8")
+    rigs = ask.get("api/folder").json()["found"]["rigs"]
+    assert [name for name in rigs if name.startswith("quay")] == ["quay/rig.toml"]

@@ -88,6 +88,9 @@ def test_what_each_step_left_is_kept_and_never_changed(photos, tmp_path):
     assert records[second.record] == rig.read_bytes()
     assert load_rig(first.record).camera.focal_length == pytest.approx((350, 350), rel=0.01)
     assert keep_rig_file(rig, "again") == second.record
+    with pytest.raises(InputError, match="is a record of a calibration"):
+        calibrate_camera_from_photos(photos, BOARD, first.record)
+    assert first.record.read_bytes() == left
 
 
 def test_the_record_says_in_what_and_how_well_the_parameters_are_known(photos, tmp_path):

@@ -3,10 +3,16 @@
 import datetime
 from pathlib import Path
 
+from ..errors import InputError
 from .atomic import replacing
 
 _FOLDER = Path("calibrate") / "records"
 _READ_ONLY = 0o444
+
+
+def is_rig_record(path: Path) -> bool:
+    """Tell by its place whether a file is a record of a calibration, and no rig to work with."""
+    return path.parent.parts[-2:] == _FOLDER.parts
 
 
 def keep_rig_file(path: Path, name: str) -> Path:
@@ -20,8 +26,14 @@ def keep_rig_file(path: Path, name: str) -> Path:
         The record: a rig file of its own, which nobody is to change.
 
     Raises:
+        InputError: The rig file is itself a record.
         DeviceError: The disk is full.
     """
+    if is_rig_record(path):
+        raise InputError(
+            f"{path} is a record of a calibration, which no later step changes; copy it to where "
+            "your rig file lies, and calibrate that."
+        )
     folder, content = path.parent / _FOLDER, path.read_bytes()
     for record in sorted(folder.glob("*.toml")):
         if record.read_bytes() == content:

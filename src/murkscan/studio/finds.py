@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ..io.rig_records import is_rig_record
 from .sandbox import Sandbox
 
 _DEEPEST = 4
@@ -91,7 +92,7 @@ def _sort_in(found: Found, sandbox: Sandbox, folder: Path, files: list[str]) -> 
         found.photos.append(sandbox.name(folder))
     for name in files:
         suffix, path = Path(name).suffix.lower(), folder / name
-        if suffix == ".toml" and _has_table(path, _OF_RIG):
+        if suffix == ".toml" and not is_rig_record(path) and _has_table(path, _OF_RIG):
             found.rigs.append(sandbox.name(path))
         if suffix == ".toml" and _has_table(path, _OF_TEST):
             found.tests.append(sandbox.name(path))
