@@ -37,7 +37,7 @@ def require_dictionary(name: str) -> None:
 
 
 def load_dictionary(name: str) -> cv2.aruco.Dictionary:
-    """Give a dictionary by OpenCV's name of it without DICT_."""
+    """Give a dictionary by OpenCV's name of it, without `DICT_` before it."""
     require_dictionary(name)
     return cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, f"DICT_{name}"))
 
