@@ -1,6 +1,7 @@
 """From the colours of a picture to grey levels in which the laser's light shows."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import final
 
 import cv2
@@ -57,7 +58,7 @@ class LaserColour:
         """Tell whether light of other colours is taken off."""
         return min(self.weights) < 0
 
-    @property
+    @cached_property  # asked of each picture of a video
     def is_luma(self) -> bool:
         """Tell whether the luma of YUV video serves as well: it holds most of a green laser."""
         is_green = _GREEN[0] <= self.wavelength <= _GREEN[1]

@@ -116,7 +116,7 @@ _ENOUGH = 10_000_000
 """Pixels that tell the law as well as more would: those of 48 PAL fields."""
 _DARKER = 0.85
 """Share of white below which pixels tell."""
-_LAGS = (1, 2, 4, 8)
+_NEAR, _NEXT, _APART_IN_MOSAIC, _FAR = 1, 2, 4, 8
 """Distances of the pixels whose differences are taken: neighbours, the next, those that share no
 noise where a camera has filled in the colours of a mosaic, and those of other blocks of an
 encoder."""
@@ -150,11 +150,18 @@ def learn_levels(images: Pictures) -> Noise:
     white = _learn_white(np.sum(counts, axis=0))
     every = _row_step(images)
     level = float(np.median([quantile_of_counts(own, 0.5) for own in counts]))
-    laws = [_learn_law(images, white, lag, every) for lag in _LAGS]
-    near, beside, _, far = (law.fixed + law.gain * level for law in laws)
-    if near < _QUANTISATION**2 and far > _SMOOTHED * near:
-        return replace(laws[3], least=_STEP)
-    return laws[2] if beside > _SHARED * near else laws[0]
+
+    def learn(lag: int) -> tuple[Noise, float]:
+        law = _learn_law(images, white, lag, every)
+        return law, law.fixed + law.gain * level
+
+    law, near = learn(_NEAR)
+    if near < _QUANTISATION**2:
+        smoothed, far = learn(_FAR)
+        if far > _SMOOTHED * near:
+            return replace(smoothed, least=_STEP)
+    _, beside = learn(_NEXT)
+    return learn(_APART_IN_MOSAIC)[0] if beside > _SHARED * near else law
 
 
 def _learn_law(images: Pictures, white: float, lag: int, every: int) -> Noise:
