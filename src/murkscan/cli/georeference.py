@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from ..capture import AbstractRecording
     from ..project import GeoreferenceResult
-    from ..project.results import MarkerResult
+    from ..project.georeference_result import MarkerResult
     from ..types.hull import HullFrame
 
 

@@ -44,7 +44,7 @@ from ..types.trajectory import Trajectory
 from .files import StageFiles
 from .kinds import CLOUD, EXTRACT, MESH, MOTION, REPORT, STAGES, TRIANGULATE, VIEW, Kind
 from .lock import hold
-from .results import ScanRecord
+from .scan_record import ScanRecord
 from .stage import Finished, Key, Stage, read_record, record_of
 
 R = TypeVar("R")

@@ -6,8 +6,8 @@ from ..errors import MissingResult
 from ..types.georeference import Georeference
 from ..types.pose import Pose
 from .folder import Project
+from .georeference_result import GeoreferenceResult
 from .kinds import GEOREFERENCE
-from .results import GeoreferenceResult
 from .stage import read_record, record_of
 
 

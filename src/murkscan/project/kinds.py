@@ -3,11 +3,11 @@
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
+from .georeference_result import GeoreferenceResult
 from .results import (
     AcceptResult,
     CloudResult,
     ExtractResult,
-    GeoreferenceResult,
     MeasureResult,
     MeshResult,
     MotionResult,

@@ -13,7 +13,8 @@ from ..types.trajectory import Trajectory
 from .describe import digest
 from .folder import Project
 from .kinds import CLOUD, MOTION
-from .results import PassRecord, PassResult
+from .results import PassResult
+from .scan_record import PassRecord
 from .scanned import as_it_moves
 
 

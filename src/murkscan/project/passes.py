@@ -20,7 +20,7 @@ from .describe import digest
 from .folder import Project
 from .kinds import CLOUD, MOTION
 from .merged import load_pass_rig, rig_key
-from .results import PassRecord
+from .scan_record import PassRecord
 from .scanned import find_frame_times, find_trajectory, is_merged
 
 Placement = Pose | Trajectory

@@ -2,14 +2,12 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from datetime import datetime
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..types.arrays import Indices, SignedFrameNumbers
 from ..types.background import Attenuation
-from ..types.hull import HullFrame
 from ..types.part_note import Skipped as Skipped
 
 if TYPE_CHECKING:
@@ -256,65 +254,6 @@ class AcceptResult:
 
 
 @dataclass(frozen=True)
-class ControlResult:
-    """How well the model meets one control point."""
-
-    name: str
-    residual: tuple[float, ...] = field(metadata={"unit": "m"})
-    """Control point less model, along east, north and up [m]."""
-    sigma: float = field(metadata={"unit": "m"})
-    """As the file states it, with that of a marker's place on the model [m]."""
-    standardised: float
-    """Length of the residual in its own standard deviations; about 1.7 is usual."""
-
-
-@dataclass(frozen=True)
-class MarkerResult:
-    """Where the marker of a control point was seen."""
-
-    name: str
-    """Of the control point."""
-    marker: int
-    """Its number in its dictionary."""
-    place: tuple[float, ...] = field(metadata={"unit": "m"})
-    """Its middle on the model [m]."""
-    sigma: float = field(metadata={"unit": "m"})
-    """Standard deviation of that along each axis [m]."""
-    pictures: int
-    """Pictures that it is the mean of."""
-    points: int
-    """Points of the scan on it."""
-
-
-@dataclass(frozen=True)
-class GeoreferenceResult:
-    """Where a model lies on the Earth; see `Georeference`."""
-
-    crs: str
-    wkt: str
-    scale: float
-    """Length in the grid of a metre on the ground."""
-    origin: tuple[float, ...] = field(metadata={"unit": "m"})
-    """Easting, northing and height from which the ground counts [m]."""
-    rotation: tuple[tuple[float, ...], ...]
-    """Rotation matrix ground_from_model: east, north, up of the model's x, y, z."""
-    translation: tuple[float, ...] = field(metadata={"unit": "m"})
-    covariance_of_turn_and_shift: tuple[tuple[float, ...], ...]
-    """About the origin [rad², rad·m, m²]."""
-    points: tuple[ControlResult, ...]
-    rms: float = field(metadata={"unit": "m"})
-    """Root mean square of the residuals' lengths [m]."""
-    inflation: float = 1.0
-    """Factor by which the residuals are larger than the stated sigmas; the covariance has it."""
-    remarks: tuple[str, ...] = ()
-    """What is odd, with its cure; sentences for the user."""
-    hull: HullFrame | None = None
-    """Of a model that was laid on a ship: the axes are then aft, to starboard and up."""
-    markers: tuple[MarkerResult, ...] = ()
-    """Of those points that markers give; `sigma` of the points has theirs."""
-
-
-@dataclass(frozen=True)
 class SimulateResult:
     """What was simulated."""
 
@@ -326,58 +265,3 @@ class SimulateResult:
     """Frames, fields counted."""
     centres: int
     """True centres of the stripe."""
-
-
-@dataclass(frozen=True)
-class RecordingRecord:
-    """What scan.json says of a recording."""
-
-    path: str
-    fingerprint: Any
-    """Changes with what the recording holds."""
-    size: tuple[int, int]
-    """Width and height of its pictures [px]."""
-    is_timed: bool
-    fields_per_picture: int
-    written: datetime | None = None
-    """When its last file was written."""
-
-
-@dataclass(frozen=True)
-class ScanRecord:
-    """scan.json: what was scanned, with what."""
-
-    versions: Mapping[str, str]
-    recording: RecordingRecord | None
-    """None for a cloud that was merged from other scans."""
-    rig: Mapping[str, Any]
-    """The tables of the rig file."""
-    format: int = 1
-    started: datetime | None = None
-    command: tuple[str, ...] = ()
-    """The words that were typed after `murkscan`."""
-    rig_file: str = ""
-    calibration: Mapping[str, Any] | None = None
-    """The record of the rig's calibration."""
-    settings: Mapping[str, Any] = field(default_factory=dict)
-    """The Choice of each kind."""
-    passes: tuple["PassRecord", ...] = ()
-    """The passes of a merged cloud."""
-    origin: tuple[float, ...] = field(default=(0.0, 0.0, 0.0), metadata={"unit": "m"})
-    """Where the coordinates of mesh.stl and mesh.glb count from in the world [m]."""
-
-
-@dataclass(frozen=True)
-class PassRecord:
-    """A pass, as it was when it was merged."""
-
-    path: str
-    """Its folder or file, relative to the merged folder, with forward slashes."""
-    identity: str
-    """Changes with what its cloud and its poses hold."""
-    scan: ScanRecord | None = None
-    """What was scanned, with what; None for a cloud of another program."""
-    carries_mount: bool = False
-    """Whether its poses came through its rig's mount."""
-    scale: float = field(default=1.0, metadata={"unit": "m"})
-    """Length of the unit of a cloud of another program [m]."""

@@ -10,7 +10,7 @@ from ..types.rig import Rig
 from ..types.trajectory import Trajectory
 from .folder import Project
 from .kinds import MOTION
-from .results import RecordingRecord
+from .scan_record import RecordingRecord
 
 
 def is_merged(project: Project) -> bool:

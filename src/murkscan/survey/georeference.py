@@ -14,7 +14,7 @@ from ..io.grid import find_grid
 from ..io.text import save_text
 from ..io.values import as_plain
 from ..project import CLOUD, GEOREFERENCE, GeoreferenceResult, Project, StageFiles
-from ..project.results import ControlResult
+from ..project.georeference_result import ControlResult
 from ..types.hull import HullFrame
 from .markers import MarkerSearch, place_markers
 from .progress import Progress, silent

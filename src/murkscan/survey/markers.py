@@ -12,7 +12,7 @@ from ..errors import InputError, NotEnoughData
 from ..io.control_points import ControlPoints
 from ..measure import MarkerPlace, MarkerSight, MarkerView, place_marker
 from ..project import Project, is_merged, load_moving_rig, load_recording
-from ..project.results import MarkerResult
+from ..project.georeference_result import MarkerResult
 from .progress import Progress, silent
 
 _LOOKS = 12.0

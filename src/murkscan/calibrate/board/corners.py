@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import cv2
 import numpy as np
-from scipy import ndimage
 from jaxtyping import Float
+from scipy import ndimage
 
 from ...types.arrays import Image, Pixels
 from .chessboard import Chessboard
@@ -173,7 +173,7 @@ def _orient(photo: Image, grid: Grid, board: Chessboard) -> tuple[Grid, bool]:
 
 def _keep_squares(grid: Grid) -> Grid:
     """Leave out corners that are of no whole square: cloth gives scattered ones."""
-    in_squares = ndimage.binary_opening(np.isfinite(grid[..., 0]), np.ones((2, 2)))
+    in_squares = ndimage.binary_opening(np.isfinite(grid[..., 0]), np.ones((2, 2), bool))
     return np.where(in_squares[..., None], grid, np.nan)
 
 
