@@ -7,7 +7,7 @@ import numpy as np
 from harness import DATA
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import gaussian_filter, map_coordinates, spline_filter
-from scipy.spatial.transform import Rotation
+from scipy.spatial.transform import Rotation, RotationSpline
 
 from murkscan.motion.adjust import Pass
 from murkscan.motion.measured import CLOCK
@@ -28,6 +28,8 @@ LOG_RATE = 10.0
 TURN = 15.0
 """Time from one pass to the next [s]."""
 WAVES = Unrest(0.15, 6e-3, 8e-3, np.deg2rad(0.7), 5.0)
+ROUNDS, EXACT = 12, 1e-7
+"""Steps along each ray to the hull, and how small the last one is to be [m]."""
 BASELINE = 0.2
 """From the camera to the lasers, along the way [m]."""
 
@@ -123,8 +125,7 @@ class Way:
     def at(self, times):
         """Compute positions [m] and rotations world_from_vehicle at some times [s]."""
         positions = CubicSpline(self.times, self.positions)(times)
-        turns = CubicSpline(self.times, self.rotations.as_rotvec())(times)
-        return positions, Rotation.from_rotvec(turns)
+        return positions, RotationSpline(self.times, self.rotations)(times)
 
 
 def wander(times, random, *, shortest, longest):
@@ -191,7 +192,8 @@ def real_motion(name, times, random):
     found = []
     for begin in np.arange(0, clock[-1] - span, span / 4):
         inside = (clock >= begin) & (clock <= begin + span)
-        if inside.sum() < span * 3 or np.diff(clock[inside]).max() > 1.0:
+        known = np.concatenate([[begin], clock[inside], [begin + span]])
+        if inside.sum() < span * 3 or np.diff(known).max() > 1.0:
             continue
         turns = (attitudes[inside] * attitudes[inside].mean().inv()).as_rotvec()
         found.append((np.abs(turns).max(), begin))
@@ -236,10 +238,12 @@ def see(hull, way, tilts, duration):
         from_there = positions + matrices @ origin
         directions = np.einsum("nij,lj->nli", matrices, beams)
         far = np.full(directions.shape[:2], STAND_OFF)
-        for _ in range(6):
+        for _ in range(ROUNDS):
             at = from_there[:, None] + far[..., None] * directions
             off = hull.height(at[..., 0].ravel(), at[..., 1].ravel()).reshape(far.shape)
-            far = far + (off - at[..., 2]) / directions[..., 2]
+            further = (off - at[..., 2]) / directions[..., 2]
+            far = far + further
+        assert np.abs(further).max() < EXACT, "a sheet grazes the hull"
         at = origin + far[..., None] * beams
         world = from_there[:, None] + far[..., None] * directions
         count = far.size
