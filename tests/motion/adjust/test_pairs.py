@@ -11,7 +11,8 @@ from murkscan.motion.adjust.first_path import first_path, fit_path
 from murkscan.motion.adjust.legs import cut_legs, make_facets
 from murkscan.motion.adjust.pairs import make_side, pair_facets, steady_normals
 from murkscan.motion.adjust.solve import State
-from murkscan.motion.adjust.ties import linearise
+from murkscan.motion.adjust.strays import drop_strays
+from murkscan.motion.adjust.ties import Ties, as_seen, linearise
 from murkscan.types.navigation import Navigation, NavigationAccuracy
 from murkscan.types.trajectory import Trajectory
 
@@ -149,3 +150,29 @@ def test_a_stretch_that_lies_beside_its_like_is_counted_in_time():
     false = compare_passes(State((paths[0], torn), np.zeros(0)), legs)
     assert min(false.astray) == pytest.approx(2.8, abs=0.5)
     assert false.apart > 3 * true.apart
+
+
+def test_a_tile_that_lies_on_other_bumps_is_left_out():
+    found = [see(number, noise=1e-4) for number in (0, 1)]
+    facets, paths = zip(*map(facets_of, found, (0, 1)), strict=True)
+    legs, way = [one.leg for one in facets], found[1].start
+    late = np.where(way.times > 3, 15e-3, 0.0)
+    torn = fit_path(paths[1], replace(way, positions=way.positions + np.outer(late, [1.0, 1.0, 0])))
+    state = State((paths[0], torn), np.zeros(0))
+    tiles = {(0, 1): tile_where_they_lie(facets[0], state, [1.5, 2.5, 4.5, 5.0])}
+    assert list(drop_strays(tiles, state, legs)[0, 1].time_a[::3]) == [1.5, 2.5]
+    true = State(paths, np.zeros(0))
+    tiles = {(0, 1): tile_where_they_lie(facets[0], true, [1.5, 2.5, 4.5, 5.0])}
+    assert len(drop_strays(tiles, true, legs)[0, 1]) == 12
+
+
+def tile_where_they_lie(facets, state, times):
+    """Tie places that the first pass saw at some times to where the second one has them."""
+    rows = [np.abs(facets.leg.row_times[facets.row] - time).argmin() for time in times]
+    points = np.repeat(facets.points[rows], 3, axis=0)
+    times, passes = np.repeat(times, 3), np.zeros(3 * len(times), np.int64)
+    return Ties(
+        passes, times, as_seen(passes, times, points, state.paths),
+        passes + 1, times, as_seen(passes + 1, times, points, state.paths),
+        np.tile(np.eye(3), (len(rows), 1)), np.zeros(len(times)), np.ones(len(times)),
+    )  # fmt: skip

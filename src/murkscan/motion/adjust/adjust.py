@@ -17,15 +17,17 @@ from ...types.trajectory import Trajectory
 from .checks import Seams, compare_passes, find_blind
 from .draws import draw_errors
 from .first_path import first_path, fit_path
-from .legs import Leg, Pass, cut_legs, make_facets
+from .legs import Leg, Pass, cut_legs
 from .log_terms import Log
-from .pairs import make_side, pair_facets
+from .pairs import make_sides, pair_facets
 from .path import WIDTH, Path
-from .rough import MORE, count_tiles, lay_roughly, may_meet
+from .rough import MORE, Tiles, count_tiles, lay_roughly, may_meet
 from .settings import AdjustSettings
 from .solve import State, improve
+from .strays import drop_strays
 from .ties import Ties
 from .unknowns import Layout
+from .unrest import learn_unrest
 
 _MODES = 64
 """Errors that are drawn to state the uncertainty: σ to one part in eleven."""
@@ -137,29 +139,12 @@ def adjust_passes(
     apart = compare_passes(state, legs).apart
     groups: list[Ties] = []
     known: list[Ties] = []
-    for within in (True, False):
+    for within in (True, False)[: len(passes)]:
         rounds = settings.fine_rounds if not within or len(passes) == 1 else settings.inner_rounds
-        tiles: list[Ties] = []
-        for cycle in range(settings.cycles):
-            rough, found = lay_roughly(
-                state,
-                logs,
-                legs,
-                known,
-                settings,
-                tell,
-                within=within,
-                before=count_tiles(tiles),
-            )
-            if cycle and count_tiles(found) <= MORE * count_tiles(tiles):
-                break
-            tiles = found
-            state, groups = _lay_finely(
-                rough, logs, legs, [*known, *tiles], settings, tell, rounds=rounds, within=within
-            )
-        known += tiles
-        if len(passes) == 1:
-            break
+        state, logs, groups, tiles = _settle(
+            state, logs, legs, known, settings, tell, rounds=rounds, within=within
+        )
+        known += tiles.values()
     errors = draw_errors(state, logs, groups, settings, count=_MODES, as_seen=True)
     blind, laid = find_blind(state, legs, logs, settings), compare_passes(state, legs)
     scale = 1 / np.sqrt(_MODES)
@@ -167,6 +152,36 @@ def adjust_passes(
         state.paths, as_logged, state, logs, tuple(groups), scale * errors, scale * loose,
         tuple(known), blind, Seams(apart, laid.apart), laid.astray,
     )  # fmt: skip
+
+
+def _settle(
+    state: State,
+    logs: tuple[Log, ...],
+    legs: Sequence[Leg],
+    known: Sequence[Ties],
+    settings: AdjustSettings,
+    tell: Callable[[str], None],
+    *,
+    rounds: int,
+    within: bool,
+) -> tuple[State, tuple[Log, ...], list[Ties], Tiles]:
+    """Look for tiles and pair facets by turns, until no more tiles are found; see `_lay_finely`."""
+    tiles: Tiles = {}
+    groups: list[Ties] = []
+    for cycle in range(settings.cycles):
+        sound = drop_strays(tiles, state, legs)
+        strays = count_tiles(tiles) - count_tiles(sound)
+        if strays:
+            tell(f"{strays} tiles do not lie on their like")
+            state = improve(state, logs, [*known, *sound.values()], settings, steps=6)
+        rough, found = lay_roughly(state, logs, legs, known, sound, settings, tell, within=within)
+        if cycle and not strays and count_tiles(found) <= MORE * count_tiles(tiles):
+            break
+        tiles, ties = found, [*known, *found.values()]
+        state, groups, logs = _lay_finely(
+            rough, logs, legs, ties, settings, tell, rounds=rounds, within=within
+        )
+    return state, logs, groups, tiles
 
 
 def _lay(path: Path, one: Pass) -> Path:
@@ -231,7 +246,7 @@ def _matched(found: Sequence[Ties], a: Leg, b: Leg) -> Mask:
 
 def _lay_finely(
     state: State,
-    logs: Sequence[Log],
+    logs: tuple[Log, ...],
     legs: Sequence[Leg],
     found: Sequence[Ties],
     settings: AdjustSettings,
@@ -239,15 +254,15 @@ def _lay_finely(
     *,
     rounds: int,
     within: bool,
-) -> tuple[State, list[Ties]]:
-    """Pair facets anew after each step, until nothing moves; within passes alone or all."""
+) -> tuple[State, list[Ties], tuple[Log, ...]]:
+    """Pair facets anew after each step, until nothing moves; within passes alone or all.
+
+    Returns:
+        Where everything lies, the last ties, and the logs with the unrest that was seen.
+    """
     groups: list[Ties] = []
     for number in range(rounds):
-        sides = [
-            make_side(make_facets(leg, path), path)
-            for leg in legs
-            for path in [state.paths[leg.number]]
-        ]
+        sides = make_sides(legs, state.paths)
         reach = max(8e-3 / 2**number, 1e-3)
         most = settings.ties if number < rounds - _FULL else _ALL
         groups = [
@@ -265,11 +280,12 @@ def _lay_finely(
         if not groups:
             break
         before, state = state, improve(state, logs, groups, settings, steps=3)
+        logs = learn_unrest(state, logs, groups, settings)
         moved = _change(before, state)
         tell(f"fine round {number}: {sum(map(len, groups))} ties, moved {moved * 1e3:.3f} mm")
         if moved < _SETTLED:
             break
-    return state, groups
+    return state, groups, logs
 
 
 def _change(before: State, after: State) -> float:

@@ -10,22 +10,16 @@ from jaxtyping import Float
 from ...types.arrays import Scalars
 from .legs import Leg, make_facets
 from .log_terms import Log
-from .pairs import make_side, measure_apart
+from .pairs import make_sides
 from .rough import carry_to_vehicles, may_meet, tie_legs
 from .settings import AdjustSettings
 from .solve import State
+from .strays import SEAM, compare_legs
 from .ties import linearise
-from .tiles import FLATTEST, make_relief
+from .tiles import make_relief
 
 _ROW = 0.3
 """Time up to which tiles lie in one row, beside one another [s]."""
-_SEAM = 20e-3
-"""Distance up to which passes are looked for in each other's place [m]."""
-_LIKE = 0.5
-"""Distance of facets, in their legs' relief, below which they lie on their like: two reliefs that
-have nothing in common lie 1.4 apart."""
-_ROW_FACETS = 5
-"""Facets of a row that tell how it lies."""
 
 
 @dataclass(frozen=True)
@@ -51,26 +45,16 @@ class Overlaps:
 
 def compare_passes(state: State, legs: Sequence[Leg]) -> Overlaps:
     """Measure how far facets of different passes lie apart, and where bumps do not lie on bumps."""
-    sides = [
-        make_side(make_facets(leg, path), path)
-        for leg in legs
-        for path in [state.paths[leg.number]]
-    ]
+    sides = make_sides(legs, state.paths)
     offs, astray = [np.zeros(0)], [0.0] * len(state.paths)
     for a, b in permutations(sides, 2):
         one, other = a.facets.leg.number, b.facets.leg.number
-        if one == other or not may_meet(a.facets, b.facets, _SEAM):
+        if one == other or not may_meet(a.facets, b.facets, SEAM):
             continue
-        off, row = measure_apart(a, b, _SEAM)
-        offs.append(off)
-        relief = float(np.sqrt((a.relief + b.relief) / 2))
-        if len(off) and relief > FLATTEST:
-            count = np.bincount(row, minlength=1)
-            size = np.sqrt(np.bincount(row, off**2) / np.maximum(count, 1))
-            there = np.flatnonzero(count >= _ROW_FACETS)
-            times = a.facets.leg.row_times[there]
-            good = times[size[there] < _LIKE * relief]
-            astray[one] = max(astray[one], longest_without(times, good))
+        lies = compare_legs(a, b)
+        offs.append(lies.apart)
+        longest = longest_without(lies.times, lies.times[~lies.is_stray])
+        astray[one] = max(astray[one], longest)
     every = np.concatenate(offs)
     apart = float(np.sqrt(np.mean(every**2))) if len(every) else 0.0
     return Overlaps(apart, tuple(astray))

@@ -44,6 +44,10 @@ class Log:
     """Where the way begins, about, if no instrument has measured its place [m]."""
     origin_sigma: float = _ORIGIN
     """Standard deviation of that [m]; unless said, the world begins there."""
+    unrest: tuple[float, ...] = (0.2, 0.2, 0.2, 0.4, 0.4, 0.4)
+    """Usual acceleration of the vehicle along each of the world's axes [m/s²], and of its turn
+    about each [rad/s²]: a thruster's push on a vehicle of some ten kilograms. Weak: it only holds
+    what nothing else does, until the scan has shown how restless its vehicle is."""
 
     def equations(
         self, path: Path, errors: Float[np.ndarray, " u"], settings: AdjustSettings
@@ -57,7 +61,7 @@ class Log:
         """
         parts = [one for one in self._measured(path, errors) if one is not None]
         parts += self._assumed(path, errors, settings)
-        return Equations.stack([*parts, _steady(path, self._start, self.layout.count, settings)])
+        return Equations.stack([*parts, _steady(path, self._start, self.layout.count, self.unrest)])
 
     @property
     def _start(self) -> int:
@@ -257,12 +261,12 @@ def prior_equations(logs: Sequence[Log], unknowns: Float[np.ndarray, " u"]) -> E
     return Equations(unknowns[places] / sigma, jacobian)
 
 
-def _steady(path: Path, start: int, width: int, settings: AdjustSettings) -> Equations:
+def _steady(path: Path, start: int, width: int, unrest: Sequence[float]) -> Equations:
     """Hold accelerations near 0: weakly, so that nothing stays without any equation."""
-    times = path.knots.start + path.knots.step * (np.arange(path.knots.num_pieces) + 0.5)
+    times = path.knots.middles
     first, weights = path.knots.weights(times, derivative=2)
     slopes = weights[:, :, None, None] * np.eye(6)
-    sigma = np.repeat([settings.acceleration, settings.turn_acceleration], 3)
+    sigma = np.array(unrest)
     change = np.hstack(
         [
             evaluate(path.knots, path.positions, times, derivative=2),

@@ -1,5 +1,6 @@
 """Facets of two legs that lie on one another."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,7 +8,7 @@ from jaxtyping import Bool, Float
 from scipy.spatial import cKDTree
 
 from ...types.arrays import Directions, Indices, Mask, Points, Scalars
-from .legs import Facets
+from .legs import Facets, Leg, make_facets
 from .path import Path
 from .ties import Ties
 from .tiles import make_heights
@@ -66,6 +67,11 @@ class Side:
         poses = self.path.at(times)
         places = self.facets.points[which] + aside
         return times, np.einsum("nji,nj->ni", poses.rotations, places - poses.positions)
+
+
+def make_sides(legs: Sequence[Leg], paths: Sequence[Path]) -> list[Side]:
+    """Fit each leg's facets where its path lies, and make them ready to be paired."""
+    return [make_side(make_facets(leg, path), path) for leg in legs for path in [paths[leg.number]]]
 
 
 def make_side(facets: Facets, path: Path) -> Side:

@@ -17,6 +17,8 @@ from .solve import State, improve
 from .ties import Ties, as_seen
 from .tiles import Relief, make_relief, tie_tiles
 
+Tiles = dict[tuple[int, int], Ties]
+"""Ties of tiles of one leg that were found in another, by the places of both among the legs."""
 MORE = 1.05
 """Growth of the count of tiles that were found which is worth another look."""
 _DRAWS = 24
@@ -28,39 +30,39 @@ def lay_roughly(
     logs: Sequence[Log],
     legs: Sequence[Leg],
     known: Sequence[Ties],
+    found: Tiles,
     settings: AdjustSettings,
     tell: Callable[[str], None],
     *,
     within: bool,
-    before: int,
-) -> tuple[State, list[Ties]]:
+) -> tuple[State, Tiles]:
     """Tie tiles within passes, or between them, beside the ties that are known.
 
-    It ends where no more tiles are found than in the round before; `before` is the count of tiles
-    that were found when the paths lay elsewhere.
+    It ends where no more tiles are found than in the round before; `found` are those that were
+    found when the paths lay elsewhere, and are believed.
     """
-    found: list[Ties] = []
+    before = count_tiles(found)
     for _ in range(settings.rounds):
         reliefs = [make_relief(make_facets(leg, state.paths[leg.number])) for leg in legs]
-        errors = draw_errors(state, logs, [*known, *found], settings, count=_DRAWS)
-        found = [
-            carry_to_vehicles(ties, state)
+        errors = draw_errors(state, logs, [*known, *found.values()], settings, count=_DRAWS)
+        found = {
+            (i, j): carry_to_vehicles(ties, state)
             for i, j in combinations(range(len(legs)), 2)
             if _are_to_meet(legs[i], legs[j], within=within)
             for ties, _ in tie_legs(reliefs[i], reliefs[j], state, errors, settings, logs)
-        ]
+        }
         count = count_tiles(found)
         tell(f"{count} tiles {'within' if within else 'between'} passes")
-        state = improve(state, logs, [*known, *found], settings, steps=6)
+        state = improve(state, logs, [*known, *found.values()], settings, steps=6)
         if count <= MORE * before:
             break
         before = count
     return state, found
 
 
-def count_tiles(found: Sequence[Ties]) -> int:
+def count_tiles(found: Tiles) -> int:
     """Count tiles: each has three ties."""
-    return sum(map(len, found)) // 3
+    return sum(map(len, found.values())) // 3
 
 
 def _are_to_meet(a: Leg, b: Leg, *, within: bool) -> bool:

@@ -13,11 +13,6 @@ class AdjustSettings:
     """Length of a spline's piece [s]: at 0.4 s pieces leave 0.1 mm (RMS) of how a small vehicle
     moves in waves of up to 1 Hz, and ties of some hundredths of a millimetre then bend the way by
     millimetres where they cannot tell; at 0.2 s 0.005 mm."""
-    acceleration: float = 0.2
-    """Usual acceleration of a vehicle that scans, along each axis [m/s²]: a thruster's push on a
-    vehicle of some ten kilograms. Weak: it only holds what nothing else does."""
-    turn_acceleration: float = 0.4
-    """The same of its turn about each axis [rad/s²]."""
     speed_wander: float = 0.2
     """How a speed that is only about known wanders, as a share of it, and velocity across it."""
     attitude_wander: float = np.deg2rad(3.0)

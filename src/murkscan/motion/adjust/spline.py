@@ -61,6 +61,11 @@ class Knots:
         return self.start + self.step * self.num_pieces
 
     @property
+    def middles(self) -> Scalars:
+        """Give the middle of each piece [s]."""
+        return self.start + self.step * (np.arange(self.num_pieces) + 0.5)
+
+    @property
     def control_times(self) -> Scalars:
         """Give the time about which each control value counts most [s]."""
         return self.start + self.step * (np.arange(self.num_controls) - 1.0)
