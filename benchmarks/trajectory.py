@@ -1,6 +1,6 @@
 """How well a vehicle's trajectory is corrected from what its scans show of the same places.
 
-Run: python benchmarks/trajectory.py [--keep FOLDER] [--seconds S] [--seeds N] [--cases a,b]
+Run: python benchmarks/trajectory.py [--keep FOLDER] [--seconds S] [--seeds N] [--cases "A;B"]
 """
 
 import argparse
@@ -74,11 +74,11 @@ def main() -> None:
     parser.add_argument("--keep", type=Path, default=Path("trajectory-kept"))
     parser.add_argument("--seconds", type=float, default=float("inf"))
     parser.add_argument("--seeds", type=int, default=10)
-    parser.add_argument("--cases", default="", help="parts of the names of cases to run")
+    parser.add_argument("--cases", default="", help="parts of names of cases to run, by semicolons")
     given = parser.parse_args()
     given.keep.mkdir(parents=True, exist_ok=True)
     kept = Kept(given.keep, time.monotonic() + given.seconds)
-    chosen = [n for n in CASES if not given.cases or any(c in n for c in given.cases.split(","))]
+    chosen = [n for n in CASES if not given.cases or any(c in n for c in given.cases.split(";"))]
     done: dict[str, list] = {name: [] for name in chosen}
     is_stopped = False
     # Seed by seed, so that a run that is stopped has something of every case.
