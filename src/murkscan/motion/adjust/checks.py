@@ -45,7 +45,7 @@ class Overlaps:
 
 def compare_passes(state: State, legs: Sequence[Leg]) -> Overlaps:
     """Measure how far facets of different passes lie apart, and where bumps do not lie on bumps."""
-    sides = make_sides(legs, state.paths)
+    sides = make_sides(legs, state.paths) if len(state.paths) > 1 else []
     offs, astray = [np.zeros(0)], [0.0] * len(state.paths)
     for a, b in permutations(sides, 2):
         one, other = a.facets.leg.number, b.facets.leg.number
