@@ -11,7 +11,7 @@ from murkscan.motion.adjust.first_path import first_path, fit_path
 from murkscan.motion.adjust.legs import cut_legs, make_facets
 from murkscan.motion.adjust.pairs import make_side, pair_facets, steady_normals
 from murkscan.motion.adjust.solve import State
-from murkscan.motion.adjust.strays import drop_strays
+from murkscan.motion.adjust.strays import compare_legs, drop_strays
 from murkscan.motion.adjust.ties import Ties, as_seen, linearise
 from murkscan.types.navigation import Navigation, NavigationAccuracy
 from murkscan.types.trajectory import Trajectory
@@ -164,6 +164,14 @@ def test_a_tile_that_lies_on_other_bumps_is_left_out():
     true = State(paths, np.zeros(0))
     tiles = {(0, 1): tile_where_they_lie(facets[0], true, [1.5, 2.5, 4.5, 5.0])}
     assert len(drop_strays(tiles, true, legs)[0, 1]) == 12
+
+
+@pytest.mark.parametrize(("noise", "tells"), [(1e-4, True), (2e-3, False)])
+def test_rows_tell_on_what_they_lie_where_bumps_are_higher_than_their_noise(noise, tells):
+    sides = [make_side(*facets_of(see(number, noise=noise), number)) for number in (0, 1)]
+    lies = compare_legs(*sides)
+    assert bool(len(lies.times)) is tells
+    assert not lies.is_stray.any()
 
 
 def tile_where_they_lie(facets, state, times):

@@ -16,9 +16,8 @@ from .tiles import FLATTEST
 
 SEAM = 20e-3
 """Distance up to which legs are looked for in each other's place [m]."""
-_LIKE = 0.5
-"""Distance of facets, in their legs' relief, below which they lie on their like: two reliefs that
-have nothing in common lie 1.4 apart."""
+_ROUGH = 3.0
+"""Variance of heights, in that of their noise, below which rows do not tell on what they lie."""
 _HERE = 4.0
 """Cells within which a tile lies where it was found."""
 _ROW_FACETS = 5
@@ -38,15 +37,25 @@ class Overlap:
 
 
 def compare_legs(a: Side, b: Side) -> Overlap:
-    """Compare one leg with another where both lie on one another."""
+    """Compare one leg with another where both lie on one another.
+
+    Facets of two legs lie apart by the noise of both, and on other bumps by those of both, too: a
+    row is a stray beyond a quarter of the way from the one mean square to the other.
+    """
     apart, row = measure_apart(a, b, SEAM)
-    relief = float(np.sqrt((a.relief + b.relief) / 2))
-    if not len(apart) or relief <= FLATTEST:
+    noise, relief = _noise(a) + _noise(b), a.relief + b.relief
+    if not len(apart) or relief <= max(2 * FLATTEST**2, _ROUGH * noise):
         return Overlap(apart, np.zeros(0), np.zeros(0, bool))
     count = np.bincount(row)
-    size = np.sqrt(np.bincount(row, apart**2) / np.maximum(count, 1))
+    square = np.bincount(row, apart**2) / np.maximum(count, 1)
     there = np.flatnonzero(count >= _ROW_FACETS)
-    return Overlap(apart, a.facets.leg.row_times[there], size[there] >= _LIKE * relief)
+    is_stray = square[there] >= noise + (relief - noise) / 4
+    return Overlap(apart, a.facets.leg.row_times[there], is_stray)
+
+
+def _noise(side: Side) -> float:
+    """Give the variance of a leg's heights that is noise [m²]."""
+    return float(np.mean(side.facets.variance / side.facets.count))
 
 
 def drop_strays(tiles: Tiles, state: State, legs: Sequence[Leg]) -> Tiles:
