@@ -8,6 +8,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -30,10 +31,11 @@ from murkscan import (
 )
 from murkscan.geometry.closest import Closest, face_normals, find_closest
 from murkscan.geometry.grid import NONE, ScanGrid
+from murkscan.geometry.point_normals import estimate_point_normals
 from murkscan.io.mesh_files import load_mesh
 from murkscan.io.parquet import load_true_stripe
 from murkscan.io.poses import load_poses
-from murkscan.mesh import AbstractMesher, ClosedHoles, close_holes, decimate
+from murkscan.mesh import AbstractMesher, close_holes, decimate
 from murkscan.simulate import Recorder, load_scene
 from murkscan.survey.cloud import build_cloud
 from murkscan.survey.extract import extract_recording
@@ -224,7 +226,19 @@ def measure_time() -> Iterator[Figure]:
             yield Figure("thin them out to 100 000", seconds, "s")
 
 
-def _timed(run: Callable[[], Mesh | ClosedHoles]) -> tuple[float, Any]:
+def compare_pieces() -> Figure:
+    """Compare the normals of 2500 pieces, 0.1 m apart, with those of as many points of one."""
+    x, y = (part.ravel() for part in np.meshgrid(np.arange(7) * 1e-3, np.arange(7) * 1e-3))
+    row, column = (part.ravel()[:, None] for part in np.indices((50, 50)))
+    tilted = np.where((row + column) % 2, x, -x)
+    seconds = []
+    for gap in (7e-3, 0.1):
+        points = np.stack([row * gap + x, column * gap + y, tilted], axis=-1).reshape(-1, 3)
+        seconds.append(_timed(partial(estimate_point_normals, points))[0])
+    return Figure("normals of 2500 pieces, over those of one", seconds[1] / seconds[0], at_most=1.5)
+
+
+def _timed(run: Callable[[], Any]) -> tuple[float, Any]:
     start = time.perf_counter()
     made = run()
     return time.perf_counter() - start, made
@@ -251,7 +265,7 @@ def main() -> None:
     figures.append(Figure("cloud: smooth points", 100 * float(judged.is_smooth.mean()), "%"))
     for name, mesher in available():
         figures += measure_mesh(name, mesher.mesh(judged.cloud), judged)
-    figures += measure_time()
+    figures += [*measure_time(), compare_pieces()]
     tell("mesh", "Surfaces of a hull in murky water", figures, note=NOTE)
 
 
