@@ -202,7 +202,7 @@ recording = open_recording(sys.argv[1])
 for frame in islice(recording.frames(recording.num_frames - 100), 100): pass
 recording.sample(48)
 """
-_NOTHING = "import murkscan.io.dive.contents, murkscan.capture, murkscan.cli.main"
+_NOTHING = "import murkscan.io.dive.gather, murkscan.capture, murkscan.cli.main"
 _PEAK = "import sys\n{}\nprint(open('/proc/self/status').read().split('VmHWM:')[1].split()[0])"
 """A process' own largest resident set [kB]; what wait4 tells counts that of who began it, too."""
 

@@ -28,7 +28,7 @@ from dive_files import (
 from murkscan.capture import open_recording
 from murkscan.errors import FormatError, InputError
 from murkscan.io.dive.clock import find_steps_back, smooth_arrival, time_by_other
-from murkscan.io.dive.contents import read_contents
+from murkscan.io.dive.gather import read_contents
 from murkscan.io.dive.listing import list_contents
 from murkscan.io.navigation_log import read_navigation_log
 from murkscan.types.trajectory import Trajectory

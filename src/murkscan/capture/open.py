@@ -10,7 +10,7 @@ from typing import Any
 import av
 
 from ..errors import FormatError, InputError
-from ..io.dive.contents import read_contents
+from ..io.dive.gather import read_contents
 from ..io.dive.names import is_dive
 from ..io.picture_notes import count_pages
 from ..types.arrays import Image

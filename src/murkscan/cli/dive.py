@@ -13,7 +13,7 @@ def dive(file: Path) -> None:
     file
         An MCAP, a bag of ROS 1 or 2, or a .tlog.
     """
-    from ..io.dive.contents import gather_contents
+    from ..io.dive.gather import gather_contents
     from ..io.dive.listing import list_contents
 
     with progress_bars() as progress:

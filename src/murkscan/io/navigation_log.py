@@ -12,7 +12,7 @@ from ..types.arrays import Mask, Scalars
 from ..types.navigation import Navigation, NavigationAccuracy, Readings
 from ..types.trajectory import Trajectory
 from .clock_times import say_moment
-from .dive.contents import read_contents
+from .dive.gather import read_contents
 from .dive.names import is_dive
 from .dive.series import Series, SeriesKind
 from .navigation_csv import read_navigation_csv
