@@ -1,5 +1,6 @@
 """Every command in order on one small project, and what a wrong one says."""
 
+import os
 import shutil
 import subprocess
 import sys
@@ -141,6 +142,24 @@ def test_help_loads_nothing_heavy():
     )
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert said.stdout.splitlines()[-1] == "[]"
+
+
+def test_matrix_products_leave_the_cores_to_the_stages_unless_the_user_says_otherwise():
+    code = (
+        "import os, sys; from murkscan.cli import main; sys.argv = ['murkscan', '--version']\n"
+        "try: main()\n"
+        "finally: print(os.environ['OPENBLAS_NUM_THREADS'], 'numpy' in sys.modules)"
+    )
+    for given, taken in (({}, "1 False"), ({"OPENBLAS_NUM_THREADS": "2"}, "2 False")):
+        bare = {name: value for name, value in os.environ.items() if not name.endswith("_THREADS")}
+        said = subprocess.run(
+            [sys.executable, "-c", code],
+            env=bare | given,
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        assert said.stdout.splitlines()[-1] == taken
 
 
 def test_simulate_lists_its_scenes(capsys):

@@ -214,8 +214,8 @@ def _sums_that_move(fields: Field, pictures: Field) -> tuple[float, float]:
 
 def _sums(values: Field) -> tuple[float, float]:
     """Sum, and sum of squares: its square root is the spread of the sum under mere noise."""
-    flat = values.ravel().astype(np.float64)
-    return float(flat.sum()), float(flat @ flat)
+    exact = values.astype(np.float64)
+    return float(exact.sum()), float(np.square(exact).sum())
 
 
 def _judge(
