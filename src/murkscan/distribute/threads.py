@@ -33,4 +33,4 @@ class Threads(AbstractExecutor):
         """Run a task for each item; see `AbstractExecutor.map`."""
         workers = self.workers or min(os.cpu_count() or 1, _MOST)
         with ThreadPoolExecutor(workers) as pool:
-            yield from map_in_window(lambda item: pool.submit(task, item), items, workers + 1)
+            yield from map_in_window(lambda item: pool.submit(task, item), items, workers)

@@ -12,11 +12,11 @@ R = TypeVar("R")
 def map_in_window(
     submit: Callable[[T], Future[R]], items: Iterable[T], width: int
 ) -> Generator[R, None, None]:
-    """Submit items as results are taken.
+    """Submit items as results are taken, and take the next one while the others are worked on.
 
     Args:
         submit: Begins the work on an item.
-        items: What is worked on; one more is taken whenever a result is given.
+        items: What is worked on; one is taken ahead of those under way.
         width: Items under way at once.
 
     Yields:
@@ -25,9 +25,12 @@ def map_in_window(
     waiting: deque[Future[R]] = deque()
     try:
         for item in items:
+            if len(waiting) < width:
+                waiting.append(submit(item))
+                continue
+            result = waiting.popleft().result()
             waiting.append(submit(item))
-            if len(waiting) >= width:
-                yield waiting.popleft().result()
+            yield result
         while waiting:
             yield waiting.popleft().result()
     finally:
