@@ -19,15 +19,16 @@ from acceptance_scene import (
     scan_case,
 )
 from harness import Figure, tell
-from kept import Kept, make_in_pieces
+from kept import Kept, digest_code, make_in_pieces
 
 from murkscan.errors import MurkscanError
 from murkscan.measure.form import LEFT_OUT
 
 ATTENUATIONS, SPEEDS = (0.3, 0.5, 1.5, 3.0, 5.0), (50.0, 100.0, 200.0)
 """[1/m] and [mm/s]."""
-SEEDS, USUAL = 40, 100.0
-"""Scans of each water of `COVERED` by the PAL rig, at this speed [mm/s]."""
+SEEDS, USUAL = range(100, 140), 100.0
+"""Scans of each water of `COVERED` by the PAL rig, at this speed [mm/s]; no choice of the code was
+made on these seeds."""
 COVERED = (0.3, 1.5, 3.0)
 PAL, VISION = RATE_HZ
 WHAT = ("probing form", "probing size", "sphere spacing", "flatness", "length")
@@ -35,13 +36,18 @@ BARS = {"sphere spacing": 0.15, "probing form": 0.25, "flatness": 0.25}
 """Of the machine-vision rig at c = 1.5 /m [mm]."""
 
 Result = dict[str, Any]
+MADE_BY = digest_code(
+    ("murkscan.simulate", "murkscan.extract", "murkscan.triangulate", "murkscan.cloud",
+     "murkscan.optics.seen_points", "murkscan.measure.sample"),
+    ("acceptance_scene.py", "measure_scene.py"),
+)  # fmt: skip
 
 
 def list_cases() -> Iterator[Case]:
     """List what is scanned, the most telling first."""
     yield Case(VISION, 1.5, USUAL, 0)
     yield from (Case(PAL, c, speed, 0) for c in ATTENUATIONS for speed in SPEEDS)
-    yield from (Case(PAL, c, USUAL, seed) for seed in range(1, SEEDS) for c in COVERED)
+    yield from (Case(PAL, c, USUAL, seed) for seed in SEEDS for c in COVERED)
     yield from (Case(VISION, c, speed, 0) for c in ATTENUATIONS for speed in SPEEDS)
 
 
@@ -97,9 +103,9 @@ def coverage_of(found: dict[Case, Result]) -> list[Figure]:
     """Count how often the intervals hold the truth."""
     figures, pooled = [], list[bool]()
     for c in COVERED:
-        all_of = [found.get(Case(PAL, c, USUAL, seed)) for seed in range(SEEDS)]
+        all_of = [found.get(Case(PAL, c, USUAL, seed)) for seed in SEEDS]
         results = [one for one in all_of if one is not None and "refused" not in one]
-        if len(results) < SEEDS // 4:
+        if len(results) < len(SEEDS) // 4:
             continue
         for what in WHAT:
             truth = truth_of(what, results)
@@ -135,11 +141,9 @@ def bars_of(found: dict[Case, Result]) -> list[Figure]:
 
 
 def main() -> None:
-    found = make_in_pieces(scan_all)
+    found = make_in_pieces(scan_all, code=MADE_BY)
     parts = [f"## {rig}\n\n" + "\n".join(table_of(found, rig)) for rig in RATE_HZ]
-    count = sum(
-        one.rig == PAL and one.speed == USUAL and one.attenuation in COVERED for one in found
-    )
+    count = sum(one.seed in SEEDS for one in found)
     tell(
         "acceptance",
         "Acceptance quantities in five waters, at three speeds",

@@ -1,14 +1,13 @@
 """A dent of 2 mm in a ship's bottom: found, placed and measured; and none on an intact one."""
 
 import inspect
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 import trimesh
 from harness import Figure, tell
-from kept import Kept, make_in_pieces
+from kept import Kept, digest_code, make_in_pieces
 
 from murkscan.cli.scan import scan as scan_command
 from murkscan.cloud import merge_profiles, remove_outliers
@@ -30,7 +29,7 @@ from murkscan.types.stripe import Stripe
 from murkscan.types.trajectory import Trajectory
 from murkscan.ui.choices import make_extractor
 
-SEEDS = 20
+SEEDS = 40
 DEPTH, WIDTH = 2e-3, 60e-3
 RIM = WIDTH * 1e3 * float(np.arccos(-0.8) / np.pi)
 """Width of the dent at a tenth of its depth [mm]."""
@@ -41,6 +40,11 @@ CORNER, SIZE = (920, 380), (400, 190)
 """First column and row, and the size, of the part of the picture that shows the panel [px]."""
 AHEAD = 0.053
 """How far the stripe on the panel lies behind the camera, along its way [m]."""
+MADE_BY = digest_code(
+    ("murkscan.simulate", "murkscan.extract", "murkscan.triangulate", "murkscan.cloud",
+     "murkscan.measure.sample"),
+    ("dent.py",),
+)  # fmt: skip
 EXTRACTOR = inspect.signature(scan_command).parameters["extractor"].default
 SMALLEST, LARGEST = 0.02, 0.15
 
@@ -147,22 +151,21 @@ def judge(search: DentSearch, deepest: np.ndarray, *, is_dented: bool) -> Found:
     )
 
 
-def search_seed(seed: int, *, is_dented: bool) -> dict[str, dict[str, Any]]:
-    """Look for dents, once beside a smooth surface through the scan, once beside the drawing.
+def scan_seed(seed: int, *, is_dented: bool) -> Sample:
+    """Scan the hull of a seed."""
+    return scan(make_scene(seed, is_dented=is_dented)[0])
 
-    Gives the fields of a `Found` for each.
-    """
-    scene, intact, deepest = make_scene(seed, is_dented=is_dented)
-    sample = scan(scene)
+
+def search_seed(seed: int, sample: Sample, *, is_dented: bool) -> dict[str, Found]:
+    """Look for dents, once beside a smooth surface through the scan, once beside the drawing."""
+    _, intact, deepest = make_scene(seed, is_dented=is_dented)
     drawing = cut_out(intact, Box((-0.05, 0.8, 0.6), (0.2, 1.1, 1.0)))
     deviations = {
         "without a drawing": deviation_from_smooth(sample, largest=LARGEST),
         "with the drawing": deviation_from_mesh(sample, drawing, within=0.02),
     }
     return {
-        name: asdict(
-            judge(find_dents(sample, deviation, smallest=SMALLEST), deepest, is_dented=is_dented)
-        )
+        name: judge(find_dents(sample, deviation, smallest=SMALLEST), deepest, is_dented=is_dented)
         for name, deviation in deviations.items()
     }
 
@@ -172,11 +175,11 @@ def search_all(kept: Kept) -> dict[bool, list[dict[str, Found]]]:
     found: dict[bool, list[dict[str, Found]]] = {True: [], False: []}
     for seed in range(SEEDS):
         for is_dented, done in found.items():
-            read = kept.take(
+            sample = kept.take_scan(
                 f"{EXTRACTOR} {'dent' if is_dented else 'intact'} {seed}",
-                partial(search_seed, seed, is_dented=is_dented),
+                partial(scan_seed, seed, is_dented=is_dented),
             )
-            done.append({name: Found(**values) for name, values in read.items()})
+            done.append(search_seed(seed, sample, is_dented=is_dented))
     return found
 
 
@@ -208,7 +211,7 @@ def figures_of(name: str, dented: list[Found], intact: list[Found]) -> list[Figu
 
 
 def main() -> None:
-    found = make_in_pieces(search_all)
+    found = make_in_pieces(search_all, code=MADE_BY)
     names = tuple(found[True][0])
     tell(
         "dent",
