@@ -142,8 +142,8 @@ def variance_of_sum(weights: Scalars, errors: Scalars, profile: Indices, line: I
     """Give the variance of a weighted sum of errors, from their size and reach alone.
 
     What is left by a smooth surface does not sum to anything any more, however far the surface is
-    off as a whole; its size and reach still tell by how much. Errors are taken to be alike at no
-    distance, and less and less up to the reach.
+    off as a whole; its size, and its correlation at each lag along profiles and across them, still
+    tell by how much.
 
     Args:
         weights: Weight of each error in the sum.
@@ -152,12 +152,16 @@ def variance_of_sum(weights: Scalars, errors: Scalars, profile: Indices, line: I
         line: Number of each point's scan line.
     """
     cells = _Cells.of(profile, line)
-    reach = _find_reach(cells, errors)
-    shares = [1 - np.abs(np.arange(-r + 1, r)) / r for r in reach]
-    filled = cells.fill(weights)
-    spread = convolve1d(filled, shares[0], axis=0, mode="constant")
-    spread = convolve1d(spread, shares[1], axis=1, mode="constant")
-    return float((filled * spread).sum() * np.mean(errors**2)) * _widen(cells, reach)
+    values, there = _mean_errors(cells, errors)
+    spread = filled = cells.fill(weights)
+    half_lengths = []
+    for axis, reach in enumerate(_find_reach(cells, errors)):
+        turned = (values, there) if axis == 0 else (values.T, there.T)
+        known = np.clip(_correlations(*turned, reach), 0.0, None)
+        both = np.append(known[:0:-1], known)
+        spread = convolve1d(spread, both, axis=axis, mode="constant")
+        half_lengths.append(float(both.sum()) / _WIDTH)
+    return float((filled * spread).sum() * np.mean(errors**2)) * _widen(cells, half_lengths)
 
 
 def variances_of_means(
@@ -253,7 +257,7 @@ def _sum_pairs(
     return np.array([[float((m * s).sum()) for s in spread] for m in maps])
 
 
-def _widen(cells: _Cells, reach: tuple[int, int]) -> float:
+def _widen(cells: _Cells, reach: Sequence[float]) -> float:
     """Give the factor on a variance for sums that reach over much of the points.
 
     What is fitted away and what too few patches cannot show make such sums too small. The 97.5 %

@@ -6,7 +6,6 @@ import numpy as np
 
 from ..errors import NotEnoughData
 from ..geometry.clip import clip_mesh
-from ..geometry.correlated_errors import variance_of_sum
 from ..types.arrays import Scalars, Vector
 from ..types.measurement import Measurement
 from ..types.mesh import Mesh
@@ -139,10 +138,7 @@ def measure_volume(
     if base <= 0:
         raise NotEnoughData("The surface stands upright on the plane; give another one.")
     volume = float(shadows @ heights[mesh.faces].mean(axis=1))
-    weights = np.bincount(mesh.faces.ravel(), np.repeat(shadows / 3, 3), len(mesh.vertices))
-    number = nearest_points(sample, mesh.vertices)
-    errors = find_height_errors(mesh.vertices, plane.normal, noise=usual_noise(sample))
-    variance = variance_of_sum(weights, errors, sample.profile[number], sample.line[number])
+    variance = _variance_of_volume(mesh, sample, plane.normal, shadows)
     if trust is not None:
         how = _plane_slopes(mesh, plane, shadows, base, trust[1])
         variance += float(how @ trust[0].independent @ how)
@@ -156,6 +152,17 @@ def measure_volume(
         "volume", found, {"base_m2": base, "plane_normal": plane.normal.tolist(),
                           "plane_distance_m": plane.distance},
     )  # fmt: skip
+
+
+def _variance_of_volume(mesh: Mesh, sample: Sample, up: Vector, shadows: Scalars) -> float:
+    """Give the variance of a volume that follows from the errors of the points [m⁶]."""
+    weights = np.bincount(mesh.faces.ravel(), np.repeat(shadows / 3, 3), len(mesh.vertices))
+    # Where triangles of the border are divided, many corners stand for one point.
+    number, which = np.unique(nearest_points(sample, mesh.vertices), return_inverse=True)
+    noise = usual_noise(sample)
+    errors = find_height_errors(sample.cloud.points[number], up, noise=noise)
+    profile, line = sample.profile[number], sample.line[number]
+    return errors.variance_of_sum(np.bincount(which, weights), profile, line, noise=noise)
 
 
 def _common_volume(

@@ -1,64 +1,99 @@
-"""How far the corners of a surface lie from the smoothest one that they agree with."""
+"""How far points of a surface lie from the smoothest one that they agree with."""
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
+from scipy.special import ndtri
 
 from ..errors import NotEnoughData
+from ..geometry.correlated_errors import variance_of_sum
 from ..geometry.height_map import MapFrame
 from ..geometry.spline_surface import fit_spline_surface
-from ..types.arrays import Points, Scalars, Vector
+from ..types.arrays import Indices, Points, Scalars, Vector
 
 _PIECES = (1, 2, 4, 8, 16)
 """Pieces of a spline along the longer side, one after the other."""
 _CELLS = 64
 """Cells of the map that splines are fitted to, along the longer side at most."""
-_AGREES = 1.5
-"""Noise of the points up to which a surface leaves them by chance."""
+_AGREES, _NEARLY_ALL = 1.15, 0.9
+"""Share of the points, and how far they may lie off over what noise alone leaves: a misfit of half
+the noise then still counts as one."""
 _EDGE = 4.0
 """Robust standard deviations beyond which a height differs by shape."""
-_GAUSSIAN = 1.4826
 _TUKEY = 4.685
 _ROUNDS = 8
 
 
-def find_height_errors(vertices: Points, up: Vector, *, noise: float) -> Scalars:
-    """Give how far each corner lies from a smooth surface, along a direction [m].
+@dataclass(frozen=True, eq=False)
+class HeightErrors:
+    """How far points lie from a smooth surface, and what that surface may have followed of it."""
 
-    The surface is a plane, a paraboloid or a spline of more and more pieces: the first that leaves
-    the corners by no more than their noise, for what it follows without need is no error any more.
+    values: Scalars
+    """[m]."""
+    pieces: Indices
+    """Number of the surface's piece under each point."""
+
+    def variance_of_sum(
+        self, weights: Scalars, profile: Indices, line: Indices, *, noise: float
+    ) -> float:
+        """Compute the variance of a weighted sum of the heights' errors.
+
+        Noise that the points state and the surface does not leave was followed by its pieces: each
+        is off alike by that much.
+
+        Args:
+            weights: Weight of each error in the sum.
+            profile: Number of each point's profile.
+            line: Number of each point's scan line.
+            noise: Standard deviation of a point [m].
+        """
+        followed = max(noise**2 - float(np.mean(self.values**2)), 0.0)
+        together = np.bincount(self.pieces, weights)
+        own = variance_of_sum(weights, self.values, profile, line)
+        return own + followed * float(together @ together)
+
+
+def find_height_errors(points: Points, up: Vector, *, noise: float) -> HeightErrors:
+    """Find how far each point lies from a smooth surface, along a direction.
+
+    The surface is a plane, a paraboloid or a spline of more and more pieces: the first that nine
+    of ten points leave by no more than their noise, for what it follows without need is no error
+    any more. A surface that most points agree with is not enough: what stands out of a wall would
+    count as its error.
 
     Args:
-        vertices: The corners of a surface [m].
+        points: Points of a surface [m].
         up: The direction, unit length.
         noise: Their standard deviation [m].
     """
-    errors = np.zeros(len(vertices))
-    for surface in _surfaces(vertices, up):
-        errors = surface
-        if _spread(errors) <= _AGREES * noise:
+    found = HeightErrors(np.zeros(len(points)), np.zeros(len(points), np.int64))
+    for found in _surfaces(points, up):
+        if _spread(found.values, _NEARLY_ALL) <= _AGREES * noise:
             break
     # At an edge the smooth surface is what errs.
-    limit = _EDGE * _spread(errors)
-    return np.clip(errors, -limit, limit)
+    limit = _EDGE * _spread(found.values)
+    return replace(found, values=np.clip(found.values, -limit, limit))
 
 
-def _spread(errors: Scalars) -> float:
-    return _GAUSSIAN * float(np.median(np.abs(errors)))
+def _spread(errors: Scalars, share: float = 0.5) -> float:
+    """Give the standard deviation of Gaussian errors of which a share lies as far off as here."""
+    return float(np.quantile(np.abs(errors), share) / ndtri((1 + share) / 2))
 
 
-def _surfaces(vertices: Points, up: Vector) -> Iterator[Scalars]:
+def _surfaces(points: Points, up: Vector) -> Iterator[HeightErrors]:
     """Give the errors beside each surface, the smoothest first."""
-    side = float(np.sort(np.ptp(vertices, axis=0))[1])
-    cell = max(side / _CELLS, 2 * side / math.sqrt(len(vertices)), 1e-6)
-    frame = MapFrame.over(vertices, np.broadcast_to(up, vertices.shape), cell)
-    located = frame.locate(vertices)
+    side = float(np.sort(np.ptp(points, axis=0))[1])
+    cell = max(side / _CELLS, 2 * side / math.sqrt(len(points)), 1e-6)
+    frame = MapFrame.over(points, np.broadcast_to(up, points.shape), cell)
+    located = frame.locate(points)
     x, y = (located[:, :2] / side - 0.5).T
     ones = np.ones_like(x)
     for terms in ([ones, x, y], [ones, x, y, x * x, x * y, y * y]):
-        yield _leave(np.stack(terms, axis=1), located[:, 2])
+        errors = _leave(np.stack(terms, axis=1), located[:, 2])
+        yield HeightErrors(errors, np.arange(len(points)))
     _, count = frame.gather(located, located[:, 2])
     rows, columns = np.nonzero(count)
     means = [frame.gather(located, v)[0][rows, columns] / count[rows, columns] for v in located.T]
@@ -71,7 +106,9 @@ def _surfaces(vertices: Points, up: Vector) -> Iterator[Scalars]:
             )
         except NotEnoughData:
             return
-        yield located[:, 2] - surface.heights(located[:, :2])
+        squares = located[:, :2] // (max(extent) / pieces)
+        number = np.unique(squares, axis=0, return_inverse=True)[1].ravel()
+        yield HeightErrors(located[:, 2] - surface.heights(located[:, :2]), number)
 
 
 def _leave(design: Float[np.ndarray, "n p"], heights: Scalars) -> Scalars:
