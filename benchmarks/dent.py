@@ -1,6 +1,7 @@
 """A dent of 2 mm in a ship's bottom: found, placed and measured; and none on an intact one."""
 
 import inspect
+import itertools
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -171,15 +172,15 @@ def search_seed(seed: int, sample: Sample, *, is_dented: bool) -> dict[str, Foun
 
 
 def search_all(kept: Kept) -> dict[bool, list[dict[str, Found]]]:
-    """Search the hulls of all seeds, with the dent and without."""
+    """Search hulls with the dent and without, of as many seeds as there is time for."""
     found: dict[bool, list[dict[str, Found]]] = {True: [], False: []}
-    for seed in range(SEEDS):
-        for is_dented, done in found.items():
-            sample = kept.take_scan(
-                f"{EXTRACTOR} {'dent' if is_dented else 'intact'} {seed}",
-                partial(scan_seed, seed, is_dented=is_dented),
-            )
-            done.append(search_seed(seed, sample, is_dented=is_dented))
+    for seed, is_dented in itertools.product(range(SEEDS), found):
+        name = f"{EXTRACTOR} {'dent' if is_dented else 'intact'} {seed}"
+        try:
+            sample = kept.take_scan(name, partial(scan_seed, seed, is_dented=is_dented))
+        except TimeoutError:
+            continue
+        found[is_dented].append(search_seed(seed, sample, is_dented=is_dented))
     return found
 
 
@@ -223,14 +224,14 @@ def main() -> None:
                 name, [one[name] for one in found[True]], [one[name] for one in found[False]]
             )
         ],
-        note=f"""{SEEDS} seeds with the dent and {SEEDS} without: the scene `hull-c1.5-hd`, whose
-bottom is grown over in dark and light patches, in water of c = 1.5 /m with particles, before the
-machine-vision rig 0.8 m away, {SPACING * 1e3:g} mm from frame to frame. The dent is
-{DEPTH * 1e3:g} mm deep and {WIDTH * 1e3:g} mm wide, half a wave of a cosine, in the panel between
-keel and bilge keel, which is what is searched. Only the part of the picture that shows the panel is
-drawn ({SIZE[0]} × {SIZE[1]} of 1920 × 1200 px), {round(TRAVEL / SPACING)} frames a seed; the stripe
-is found by `{EXTRACTOR}`, the default of `murkscan scan`. Diameters are those at a tenth of the
-depth, where this dent is {RIM:.0f} mm wide. The drawing is the true hull in its true place.
+        note=f"""{len(found[True])} seeds with the dent and {len(found[False])} without: the scene
+`hull-c1.5-hd`, whose bottom is grown over in dark and light patches, in water of c = 1.5 /m with
+particles, before the machine-vision rig 0.8 m away, {SPACING * 1e3:g} mm from frame to frame. The
+dent is {DEPTH * 1e3:g} mm deep and {WIDTH * 1e3:g} mm wide, half a wave of a cosine, in the panel
+between keel and bilge keel, which is what is searched. Only the part of the picture that shows the
+panel is drawn ({SIZE[0]} × {SIZE[1]} of 1920 × 1200 px), {round(TRAVEL / SPACING)} frames a seed; the
+stripe is found by `{EXTRACTOR}`, the default of `murkscan scan`. Diameters are those at a tenth of
+the depth, where this dent is {RIM:.0f} mm wide. The drawing is the true hull in its true place.
 
 The dents lie up to 10 mm across and 30 mm along the way from the middle of the panel. Patches of
 growth pull the stripe by a hundredth of a millimetre, in every seed alike: dents in one place are

@@ -1,6 +1,7 @@
-"""Depths of dents of every shape, in scans whose points err together with their neighbours."""
+"""Dents of every shape, in scans whose points err together with their neighbours."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
@@ -28,7 +29,16 @@ SHAPES: dict[str, Callable[[np.ndarray], np.ndarray]] = {
 """Depth over that of the deepest place, at a distance from it in radii of the dent."""
 
 
-def scan_dent(shape: str, seed: int, *, wave: float = 0.0) -> tuple[Sample, Deviation, float]:
+@dataclass(frozen=True)
+class Truth:
+    """What a dent is [m]."""
+
+    depth: float
+    width: float
+    middle: np.ndarray
+
+
+def scan_dent(shape: str, seed: int, *, wave: float = 0.0) -> tuple[Sample, Deviation, Truth]:
     """Scan a wall with a dent 1 to 4 mm deep and 40 to 120 mm wide.
 
     Args:
@@ -54,7 +64,8 @@ def scan_dent(shape: str, seed: int, *, wave: float = 0.0) -> tuple[Sample, Devi
         ones * np.float32(NOISE), 0 * ones, frame.astype(np.int32), line.astype(np.int32),
         *np.zeros((2, len(x)), np.uint8),
     )  # fmt: skip
-    return Sample.from_cloud(cloud), Deviation(values, towards, np.zeros(len(x))), depth
+    deviation = Deviation(values, towards, np.zeros(len(x)))
+    return Sample.from_cloud(cloud), deviation, Truth(depth, width, middle)
 
 
 def find(sample: Sample, deviation: Deviation) -> Dent:
@@ -62,26 +73,41 @@ def find(sample: Sample, deviation: Deviation) -> Dent:
     return find_dents(sample, deviation, smallest=0.02).dents[0]
 
 
+def rim_of(shape: str) -> float:
+    """Give where a dent of this shape is a tenth as deep as in its middle, in its radii."""
+    away = np.linspace(0, 3, 3001)
+    return float(away[SHAPES[shape](away) >= 0.1][-1])
+
+
 @pytest.fixture(scope="module", params=SHAPES)
-def depths(request) -> np.ndarray:
-    """Give error and half width of the interval of each seed's depth [m]."""
-    found = []
+def found(request) -> dict[str, np.ndarray]:
+    """Give error and half width of the interval of what each seed's dent is [m]."""
+    rows = []
     for seed in range(SEEDS):
-        sample, deviation, depth = scan_dent(request.param, seed)
-        measured = find(sample, deviation).depth
-        found.append((measured.value - depth, measured.half_width))
-    return np.array(found)
+        sample, deviation, truth = scan_dent(request.param, seed)
+        dent, rim = find(sample, deviation), truth.width * rim_of(request.param)
+        off, half_widths = dent.place[:2] - truth.middle, 1.96 * dent.sigma_place[:2]
+        rows.append([
+            (dent.depth.value - truth.depth, dent.depth.half_width),
+            (dent.diameter.value - rim, dent.diameter.half_width),
+            *zip(off.tolist(), half_widths.tolist(), strict=True),
+        ])  # fmt: skip
+    return dict(zip(("depth", "diameter", "x", "y"), np.array(rows).swapaxes(0, 1), strict=True))
 
 
-def test_the_interval_of_a_depth_holds_it_whatever_the_dents_shape(depths):
-    # Of ten intervals of 95 %, nine or ten hold the truth in 91 of 100 cases.
-    assert np.mean(np.abs(depths[:, 0]) <= depths[:, 1]) >= 0.9
+@pytest.mark.parametrize("what", ["depth", "diameter", "x", "y"])
+def test_the_interval_holds_the_truth_whatever_the_dents_shape(found, what):
+    # Of ten intervals of 95 %, nine or ten hold the truth in 91 of 100 cases; eight in 99.
+    assert np.mean(np.abs(found[what][:, 0]) <= found[what][:, 1]) >= 0.8
 
 
-def test_the_interval_of_a_depth_is_no_wider_than_twice_what_its_errors_ask_for(depths):
+# A steep rim, which the averaged map does not follow, counts as noise of the place; the map's noise
+# counts as one that moves the whole rim alike.
+@pytest.mark.parametrize(("what", "widest"), [("depth", 2), ("x", 5), ("y", 5), ("diameter", 5)])
+def test_the_interval_is_not_much_wider_than_its_errors_ask_for(found, what, widest):
     # The errors' own size is known from ten to a quarter.
-    errors = np.sqrt(np.mean(depths[:, 0] ** 2))
-    assert np.median(depths[:, 1]) < 2 * 1.96 * 1.25 * errors
+    errors = np.sqrt(np.mean(found[what][:, 0] ** 2))
+    assert np.median(found[what][:, 1]) < widest * 1.96 * 1.25 * errors
 
 
 def test_a_hull_that_is_not_as_drawn_does_not_widen_the_interval():
@@ -93,10 +119,10 @@ def test_a_hull_that_is_not_as_drawn_does_not_widen_the_interval():
 
 
 def test_a_part_that_shows_hardly_more_than_the_dent_still_has_an_interval():
-    sample, deviation, depth = scan_dent("a cap of a sphere", 1)
+    sample, deviation, truth = scan_dent("a cap of a sphere", 1)
     deepest = sample.cloud.points[np.argmin(deviation.values)]
     near = np.linalg.norm(sample.cloud.points - deepest, axis=1) < 0.09
     measured = find(sample[near], deviation[near]).depth
     # What residuals alone tell is too little by up to two: they do not show what the fit follows.
-    assert abs(measured.value - depth) < 2 * measured.half_width
-    assert measured.half_width < 0.1 * depth
+    assert abs(measured.value - truth.depth) < 2 * measured.half_width
+    assert measured.half_width < 0.1 * truth.depth

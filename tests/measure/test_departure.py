@@ -57,9 +57,10 @@ def found(request) -> np.ndarray:
 
 
 @pytest.mark.parametrize("number", range(4), ids=NAMES)
-def test_the_interval_of_a_departure_holds_it_and_is_no_wider_than_half_again(found, number):
+def test_the_interval_of_a_departure_holds_it_and_is_not_much_wider(found, number):
     errors, half_widths = found[:, number].T
     # Of 20 intervals of 95 %, 17 to 20 hold in 98 of 100 cases.
     assert np.sum(np.abs(errors) <= half_widths) >= 17
-    # One half as wide would hold 13 or 14 of 20.
-    assert np.median(half_widths) < 1.5 * 1.96 * np.sqrt(np.mean(errors**2))
+    # One half as wide would hold 13 or 14 of 20. From 20 the errors' own size is known to 16 %, and
+    # it is 1.28 times what is seen at most in 95 of 100 cases.
+    assert np.median(half_widths) < 1.5 * 1.28 * 1.96 * np.sqrt(np.mean(errors**2))

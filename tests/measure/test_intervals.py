@@ -115,20 +115,21 @@ def test_the_interval_holds_the_truth(found, name):
 
 @pytest.mark.parametrize(
     ("name", "widest"),
-    # Against 1.96 standard deviations of the errors. An area's and a volume's interval has, beside
-    # noise, how far normals may be tilted and how far the bump may be no noise: a share of the
-    # number itself.
-    [("plane", 2.0), ("distance", 2.5), ("section", 3.0)],
+    # Against 1.96 standard deviations of the errors, known from forty to 11 %. An area's interval
+    # has, beside noise, how far normals may be tilted: a share of the number itself.
+    [
+        ("plane", 1.5),
+        ("distance", 1.5),
+        ("section", 1.5),
+        ("volume", 1.5),
+        ("mean height", 1.65),
+        ("volume over a fitted plane", 1.65),
+    ],
 )
 def test_the_interval_is_not_much_wider_than_the_errors(found, name, widest):
     errors, half_widths = found[name].T
     assert np.median(half_widths) < widest * 1.96 * errors.std()
 
 
-# 0.1 mm of noise is 4 % of the bump's mean height.
-@pytest.mark.parametrize(
-    ("name", "share"), [("area", 0.003), ("volume", 0.06), ("volume over a fitted plane", 0.06)]
-)
-def test_the_interval_is_a_small_share_of_what_is_measured(found, name, share):
-    truth = true_area() if name == "area" else np.pi * RADIUS**2 * HEIGHT * (0.5 - 2 / np.pi**2)
-    assert np.median(found[name][:, 1]) < share * truth
+def test_the_interval_of_an_area_is_a_small_share_of_it(found):
+    assert np.median(found["area"][:, 1]) < 0.003 * true_area()

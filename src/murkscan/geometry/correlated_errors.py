@@ -257,7 +257,7 @@ def _sum_pairs(
     return np.array([[float((m * s).sum()) for s in spread] for m in maps])
 
 
-def _widen(cells: _Cells, reach: Sequence[float]) -> float:
+def _widen(cells: _Cells, reach: Sequence[float | int]) -> float:
     """Give the factor on a variance for sums that reach over much of the points.
 
     What is fitted away and what too few patches cannot show make such sums too small. The 97.5 %

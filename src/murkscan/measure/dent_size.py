@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Bool
-from scipy.ndimage import binary_dilation, label
+from scipy.ndimage import binary_dilation, label, laplace
 
 from ..geometry.correlated_errors import covariance_of_sums
 from ..geometry.height_map import Map, MapFrame
@@ -43,6 +43,8 @@ class DentRegion:
     """Standard deviation of the map [m]."""
     sign: float
     """-1 for a dent, 1 for a bump."""
+    smoothed: float
+    """Standard deviation of the map's smoothing, in cells."""
 
     @property
     def radius(self) -> float:
@@ -112,8 +114,15 @@ def _balance(
     """Give the middle of what is missing, its deviation along the map, and the volume with its."""
     rows, columns = np.nonzero(region.cells)
     depth = -values[rows, columns]
-    places = (np.stack([columns, rows], axis=1) + 0.5) * region.frame.cell
-    middle = (depth @ places) / depth.sum()
+    # Where profiles lie as far apart as cells, a cell's points do not lie about its middle.
+    number = region.frame.gather(located, located[:, 2])[1][rows, columns]
+    sums = [region.frame.gather(located, along)[0][rows, columns] for along in located.T[:2]]
+    centres = (np.stack([columns, rows], axis=1) + 0.5) * region.frame.cell
+    means = np.stack(sums, axis=1) / np.maximum(number, 1.0)[:, None]
+    places = np.where(number[:, None] > 0, means, centres)
+    # Less the level at which it ends, so that where noise lets it end moves nothing.
+    missing = region.sign * values[rows, columns] - region.level
+    middle = (missing @ places) / missing.sum()
     area = len(depth) * region.frame.cell**2
     facing = max(float(np.median(off.normals @ region.frame.map_from_world[2])), 0.1)
     volume = float(depth.mean()) * area / facing
@@ -121,7 +130,7 @@ def _balance(
     share = 1.0 / len(off)
     weights = np.concatenate(
         [
-            (located[:, :2] - middle) * share / depth.mean(),
+            (located[:, :2] - middle) * share / missing.mean(),
             np.full((len(off), 1), share * area / facing),
         ],
         axis=1,
@@ -132,14 +141,26 @@ def _balance(
 
 
 def _measure_diameter(region: DentRegion, values: Map, reference: float) -> Quantity:
-    """Give the diameter of a circle of the dent's area; its rim moves with the map's noise."""
-    slopes = np.hypot(*np.gradient(np.nan_to_num(values), region.frame.cell))
-    rim = region.cells & binary_dilation(~region.cells)
-    slope = max(float(slopes[rim].mean()), 1e-9)
-    shift = math.hypot(region.noise, reference) / slope
+    """Compute the diameter of a circle of the dent's area; its rim moves with the map's noise.
+
+    Averaging fills dents and widens rims: what it does to a surface that curves is taken back.
+
+    References:
+        Lindeberg, Scale-Space Theory in Computer Vision, 1994, section 1.2 (the diffusion equation:
+        a Gaussian adds half its variance times the Laplacian).
+    """
+    heights = np.nan_to_num(region.sign * values)
+    sharp = heights - region.smoothed**2 / 2 * laplace(heights)
+    level = region.level * float(sharp[region.deepest] / heights[region.deepest])
+    parts, _ = label(sharp > level)
+    cells = parts == parts[region.deepest]
+    rim = cells & binary_dilation(~cells)
+    slopes = np.hypot(*np.gradient(heights, region.frame.cell))
+    shift = math.hypot(region.noise, reference) / max(float(slopes[rim].mean()), 1e-9)
+    diameter = 2 * region.frame.cell * math.sqrt(cells.sum() / math.pi)
     # Half a cell is what counting cells leaves open.
     sigma = math.hypot(2 * shift, region.frame.cell / math.sqrt(3))
-    return Quantity("diameter", 2 * region.radius, "m", sigma, 0.0)
+    return Quantity("diameter", diameter, "m", sigma, 0.0)
 
 
 def _common_part(

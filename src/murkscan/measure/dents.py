@@ -162,5 +162,6 @@ def _regions(
         cells = parts == parts[row, column]
         taken |= cells
         if 2 * math.sqrt(cells.sum() / math.pi) >= _CELLS / 2:
-            found.append(DentRegion(frame, cells, (int(row), int(column)), level, noise, sign))
+            deepest, smoothed = (int(row), int(column)), _SMOOTHING * _CELLS
+            found.append(DentRegion(frame, cells, deepest, level, noise, sign, smoothed))
     return found
