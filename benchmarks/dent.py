@@ -230,8 +230,8 @@ particles, before the machine-vision rig 0.8 m away, {SPACING * 1e3:g} mm from f
 dent is {DEPTH * 1e3:g} mm deep and {WIDTH * 1e3:g} mm wide, half a wave of a cosine, in the panel
 between keel and bilge keel, which is what is searched. Only the part of the picture that shows the
 panel is drawn ({SIZE[0]} × {SIZE[1]} of 1920 × 1200 px), {round(TRAVEL / SPACING)} frames a seed;
-the stripe is found by `{EXTRACTOR}`, the default of `murkscan scan`. Diameters are those at a tenth of
-the depth, where this dent is {RIM:.0f} mm wide. The drawing is the true hull in its true place.
+the stripe is found by `{EXTRACTOR}`, the default of `murkscan scan`. Diameters are those at a tenth
+of the depth, where this dent is {RIM:.0f} mm wide. The drawing is the true hull in its true place.
 
 The dents lie up to 10 mm across and 30 mm along the way from the middle of the panel. Patches of
 growth pull the stripe by a hundredth of a millimetre, in every seed alike: dents in one place are
