@@ -66,3 +66,14 @@ def test_a_white_core_is_closed_between_its_coloured_flanks_and_white_paper_is_n
     grey = contrast.grey(picture)
     assert (grey[:, 20:32] == 105).all()
     assert (grey[:, 40:] == 5).all()
+
+
+def test_the_coloured_fringe_of_a_white_area_is_no_line():
+    """The lens shows green a little farther up than red and blue: its light looks green there."""
+    contrast = LaserColour(532e-9, (-0.5, 1.0, -0.5), pedestal=0.02)
+    picture = np.full((80, 80, 3), 30, np.uint8)
+    picture[20:60, 20:60] = 255
+    picture[19, 20:60] = (150, 220, 150)
+    picture[60, 20:60] = (220, 150, 220)
+    grey = contrast.grey(picture)
+    assert grey[:, 21:59].max() == 5

@@ -1,5 +1,6 @@
 """From the colours of a picture to grey levels in which the laser's light shows."""
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import final
@@ -22,6 +23,11 @@ _FULL = 0.98
 """Share of the scale from which a channel counts as saturated: compression rounds tops off."""
 _HOLE = 21
 """Widest saturated core of a line that is closed [px], as in photographs for calibration."""
+_CORNER = 2 * math.ceil((math.sqrt(2) - 1) * _HOLE / 2) + 1
+"""Window that reaches from a disc of that width into the corner of a square around it [px]."""
+_FRINGE = 7
+"""Window that reaches over the fringe of a white area [px]: colours filled in between a mosaic's
+pixels come from up to 2 px away, and the lens's own blur is another."""
 
 
 @final
@@ -75,21 +81,43 @@ class LaserColour:
         top = np.iinfo(image.dtype).max
         levels = image.astype(np.float32) @ np.array(self.weights, np.float32)
         if self.is_contrast:
-            levels = self._close_core(image, levels + np.float32(self.pedestal * top))
+            levels = self._mend_saturated(image, levels + np.float32(self.pedestal * top))
         return np.clip(np.rint(levels), 0, top).astype(image.dtype)
 
-    def _close_core(
+    def _mend_saturated(
         self, image: Shaped[np.ndarray, "h w 3"], levels: Shaped[np.ndarray, "h w"]
     ) -> Shaped[np.ndarray, "h w"]:
-        """Give what is saturated, so that its colour is lost, the level of what it lies between."""
+        """Give what is saturated, so that its colour is lost, the level of what is around it."""
         top = np.iinfo(image.dtype).max
         is_full = image >= _FULL * top
         own = is_full[..., int(np.argmax(self.weights))]
+        taken_off = np.all(is_full[..., np.less(self.weights, 0)], axis=-1)
+        if taken_off.any():
+            levels = _without_fringes(levels, taken_off)
         if not own.any():
             return levels
         levels = np.where(is_full.all(axis=-1), np.float32(self.pedestal * top), levels)
-        window = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (_HOLE, _HOLE))
-        return np.where(own, cv2.morphologyEx(levels, cv2.MORPH_CLOSE, window), levels)
+        return np.where(own, cv2.morphologyEx(levels, cv2.MORPH_CLOSE, _disc(_HOLE)), levels)
+
+
+def _without_fringes(
+    levels: Shaped[np.ndarray, "h w"], is_white: Shaped[np.ndarray, "h w"]
+) -> Shaped[np.ndarray, "h w"]:
+    """Give the rims of white areas the lowest level around: lens and sensor part the colours there.
+
+    An area is wider than a line's saturated core, up to its corners.
+    """
+    white = is_white.astype(np.uint8)
+    area = cv2.morphologyEx(white, cv2.MORPH_OPEN, _disc(_HOLE))
+    if not area.any():
+        return levels
+    area = cv2.dilate(area, _disc(_CORNER)) & white
+    fringe = _disc(_FRINGE)
+    return np.where(cv2.dilate(area, fringe) > 0, cv2.erode(levels, fringe), levels)
+
+
+def _disc(size: int) -> Shaped[np.ndarray, "size size"]:
+    return cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
 
 
 def filter_response(wavelength: float) -> Vector:
