@@ -5,10 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter
+from scipy.special import ndtr
 
 from murkscan._kernels.plateaus import measure_plateaus
 from murkscan.extract import Murk
 from murkscan.extract.clutter import bound_by_stays, usual_stays
+from murkscan.extract.edges import weigh_edges
+from murkscan.extract.matched_filter import MatchedFilter
+from murkscan.extract.scan_lines import ScanLines
+from murkscan.types.background import Noise
 from murkscan.types.camera import Camera
 from murkscan.types.frame import Frame
 from murkscan.types.laser import Laser
@@ -311,3 +316,47 @@ def test_faint_lines_that_pass_beside_a_still_stripe_do_not_make_it_a_flaw_of_th
     light = [60.0 + edge + height * still for edge, height in zip(edges, paint, strict=True)]
     off = np.concatenate([s.pixels[:, 1] - 110.0 for s in _extract(_film(light))])
     assert np.sum(np.abs(off) < 1.5) > 0.97 * 24 * LENGTH
+
+
+@pytest.mark.parametrize("blur", [0.4, 1.3])
+def test_an_edge_of_what_is_lit_is_no_stripe(blur):
+    """A wall that daylight meets below a shadow passes, and half of it shows the stripe."""
+    light = []
+    for i in range(24):
+        lit = 70.0 * (80.0 + 1.5 * i + 0.1 * LINES < ROWS)
+        stripe = _line(50.0 + 1.5 * i + 0 * LINES, 25.0) * (LINES < LENGTH // 2)
+        light.append(20.0 + gaussian_filter(lit, blur) + stripe)
+    off = np.abs(_errors(_extract(_film(light)), lambda i: 50.0 + 1.5 * i + 0 * LINES))
+    assert np.sum(off < 1.5) > 0.95 * 24 * LENGTH // 2
+    assert np.mean(off < 1.5) > 0.98
+
+
+def _weigh(picture, places):
+    """Weigh what lies at places, one a scan line, as ridges of 10 standard deviations."""
+    frame = Frame(np.rint(picture).astype(np.uint8), 0, 0.0)
+    noise = Noise(1.0, 0.0, 255.0, 1.0)
+    lines = ScanLines.of(frame, "y", noise=noise)
+    return weigh_edges(lines, MatchedFilter.of(1.3, noise), LINES, places, np.full(LENGTH, 10.0))
+
+
+@pytest.mark.parametrize("width", [0.9, 1.3, 1.8])
+def test_stripes_and_edges_are_told_apart_by_the_filter_that_found_them(width):
+    """Wherever in its pixel it lies, whichever side is bright, on whatever slope."""
+    noise = 2.0 * np.random.default_rng(2).standard_normal((HEIGHT, LENGTH))
+    places = 80.0 + LINES / LENGTH
+    away = ROWS - places
+    slope = 60.0 + 0.2 * away
+    stripe = _weigh(slope + _line(places, 40.0, width=width) + noise, places)
+    assert np.median(stripe) == 0.0
+    assert np.mean(stripe > -1.0) > 0.95
+    for side in (-1, 1):
+        # Filters for ridges answer an edge most a stripe's width from it, on its bright side.
+        edge = _weigh(slope + 40.0 * ndtr(side * away / 0.7) + noise, places + side * 1.3)
+        assert np.mean(edge < -3.0) > 0.95
+
+
+def test_light_beside_an_edge_is_a_stripe():
+    """Where the sheet meets an object's silhouette, both are there."""
+    places = 80.0 + 0 * LINES
+    edge = 20.0 * ndtr((ROWS - places - 4.0) / 0.7)
+    assert (_weigh(60.0 + edge + _line(places, 60.0), places) == 0.0).all()

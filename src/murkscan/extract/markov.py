@@ -84,7 +84,7 @@ class Markov:
     def _weigh(self, ridges: Ridges, said: Evidence | None) -> Evidence:
         """Give the likelihood ratio of each ridge against noise and clutter."""
         like = weigh_heights(ridges.heights, self.rates)
-        other = 0.0 if said is None else np.minimum(said, 20.0)
+        other = ridges.edges if said is None else ridges.edges + np.minimum(said, 20.0)
         return np.where(ridges.exist, np.exp(other) * like, 0.0)
 
     def _chain(self, ridges: Ridges, ratio: Evidence) -> Posterior:

@@ -9,7 +9,7 @@ from jaxtyping import Float, Float32
 from scipy.special import erfc
 
 from .._kernels.matched_filter import score_pixels
-from ..types.arrays import Ratios
+from ..types.arrays import Ratios, Scalars
 from ..types.background import PLAIN, Noise, Search, StripeShape
 from .scan_lines import ScanLines
 
@@ -45,10 +45,7 @@ class MatchedFilter:
         """
         half = max(5, math.ceil(4 * width) + search.window)
         x = np.arange(-half, half + 1.0)
-        bell = np.exp(-0.5 * (x / width) ** 2)
-        smooth = np.stack([x**0, x, x**2], axis=1)
-        bell -= smooth @ np.linalg.lstsq(smooth, bell, rcond=None)[0]
-        return cls(noise, (bell / np.linalg.norm(bell)).astype(np.float32), width, binning)
+        return cls(noise, without_bend(np.exp(-0.5 * (x / width) ** 2)), width, binning)
 
     @property
     def reach(self) -> int:
@@ -59,6 +56,14 @@ class MatchedFilter:
         """Score each averaged pixel, in standard deviations of the noise."""
         seen = lines.binned(self.binning)
         return score_pixels(seen.signal, seen.levels, self.template, self.noise.as_law())
+
+
+def without_bend(shape: Scalars) -> Ratios:
+    """Make a template of a shape: without its part in 1, x and x², and of norm 1."""
+    x = np.arange(len(shape)) - 0.5 * (len(shape) - 1)
+    smooth = np.stack([x**0, x, x**2], axis=1)
+    rest = shape - smooth @ np.linalg.lstsq(smooth, shape, rcond=None)[0]
+    return (rest / np.linalg.norm(rest)).astype(np.float32)
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,6 +20,7 @@ from .._kernels.ridges import (
     replace_near,
 )
 from ..types.arrays import Indices, Mask, Scalars
+from .edges import weigh_edges
 from .matched_filter import FilterBank, Scored
 from .plateaus import list_plateaus
 from .scan_lines import ScanLines
@@ -46,6 +47,9 @@ _LONG, _STEADY, _MISSING = 24, 3.0, 4
 faint stripe may lack at once."""
 _MUCH = 0.1
 """Share of the scan lines that long stripes must cover to tell anything."""
+_SHAPED = 3.0
+"""Score from which a ridge's shape shows through the noise: at 4.5 more edges of paper and of a
+board's squares are followed (benchmarks/real.py, fitted sets)."""
 
 PLATEAU = -1
 """Shape of a ridge that is a plateau of white."""
@@ -74,6 +78,8 @@ class Ridges:
     """Pixels from a ridge of the commonest width up to which it has side lobes."""
     tails: Float[np.ndarray, "shapes steps"]
     """How high a stripe's blur is so many scan lines beyond its end, as a share of its height."""
+    edges: Float[np.ndarray, "lines most"]
+    """Logarithm of the likelihood ratio against an edge between bright and dark, 0 at most."""
 
     @property
     def index(self) -> int:
@@ -225,8 +231,13 @@ def find_frame_ridges(near: Mapping[int, Scored], bank: FilterBank) -> Ridges:
         drop_hidden(positions, heights, counts, shapes, own.lines.hidden)
     grains = np.array([*(float(each.binning) for each in bank.filters), 1.0])[shapes]
     reach = float(bank.filters[0].reach * bank.filters[0].binning)
-    tails = bank.tails(own.lines)
-    return Ridges(own.lines, positions, heights, counts, shapes, grains, reach, tails)
+    tails, edges = bank.tails(own.lines), np.zeros(positions.shape)
+    found = Ridges(own.lines, positions, heights, counts, shapes, grains, reach, tails, edges)
+    for number, matched in enumerate(bank.filters):
+        line, which = np.nonzero(found.exist & (shapes == number) & (heights > _SHAPED))
+        at, height = positions[line, which], heights[line, which]
+        edges[line, which] = weigh_edges(own.lines, matched, line, at, height)
+    return found
 
 
 def _add_plateaus(
