@@ -27,7 +27,7 @@ frames spread over all of it, and is not told anything else.
 
 Photographs of a board that was moved in between are no recording of a dive; they show what a
 finder does with daylight, print and edges. Left are the fringes
-of bright squares, where lens and sensor part the colours."""
+of bright squares that are not quite white, where lens and sensor part the colours."""
 
 AFTER = """\
 Heights are above the plane of the same scan's bed, as depth over travel and row along the
