@@ -20,6 +20,10 @@ from .settings import AdjustSettings
 from .spline import evaluate
 from .unknowns import Equations, Layout, equations_of_path, slopes_of_turn
 
+UNREST = (0.2, 0.2, 0.2, 0.4, 0.4, 0.4)
+"""Usual acceleration of a vehicle that scans along each of the world's axes [m/s²], and of its turn
+about each [rad/s²]: a thruster's push on a vehicle of some ten kilograms. Weak: it only holds what
+nothing else does, until the scan has shown how restless its vehicle is."""
 _SAMPLE = 0.1
 """Time between the points at which an assumption is made where no instrument measured [s]."""
 _FIXED = 1e-9
@@ -44,10 +48,8 @@ class Log:
     """Where the way begins, about, if no instrument has measured its place [m]."""
     origin_sigma: float = _ORIGIN
     """Standard deviation of that [m]; unless said, the world begins there."""
-    unrest: tuple[float, ...] = (0.2, 0.2, 0.2, 0.4, 0.4, 0.4)
-    """Usual acceleration of the vehicle along each of the world's axes [m/s²], and of its turn
-    about each [rad/s²]: a thruster's push on a vehicle of some ten kilograms. Weak: it only holds
-    what nothing else does, until the scan has shown how restless its vehicle is."""
+    unrest: tuple[float, ...] = UNREST
+    """Usual accelerations of the vehicle; see `UNREST`."""
 
     def equations(
         self, path: Path, errors: Float[np.ndarray, " u"], settings: AdjustSettings

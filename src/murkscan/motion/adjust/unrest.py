@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from .draws import draw_errors
-from .log_terms import Log
+from .log_terms import UNREST, Log
 from .path import WIDTH, Path
 from .settings import AdjustSettings
 from .solve import State
@@ -21,29 +21,35 @@ _DRAWS = 8
 def learn_unrest(
     state: State, logs: Sequence[Log], groups: Sequence[Ties], settings: AdjustSettings
 ) -> tuple[Log, ...]:
-    """Take for usual accelerations of each pass those of its path as it is known now.
+    """Take for usual such accelerations of each pass as its path shows.
 
-    The mean square of an acceleration is that of what was found and of the errors that it may have:
-    where nothing holds a path these are as large as was assumed, and so the assumption stays.
+    They are changed until logs and assumptions alone would let accelerations be as large as those
+    that are seen: their mean square is that of what was found and of the errors that it may have.
+    Where no tie says more than the log, both are the same, and what was assumed stays. It is never
+    exceeded. A path turns away from its log's own attitude: where that was measured, and perhaps
+    stamped by another clock, turns say nothing of the vehicle's unrest, and are not learnt.
 
     Args:
         state: Where everything stands.
         logs: The logs, with the unrest that was assumed so far.
         groups: The ties.
         settings: As for the adjustment.
-
-    References:
-        Dempster, Laird and Rubin, Maximum likelihood from incomplete data via the EM algorithm,
-        Journal of the Royal Statistical Society B 39, 1977: one step of it.
     """
-    errors = draw_errors(state, logs, groups, settings, count=_DRAWS)
+    seen, alone = (draw_errors(state, logs, ties, settings, count=_DRAWS) for ties in (groups, ()))
     learnt = []
     for log, path in zip(logs, state.paths, strict=True):
         start, size = log.layout.starts[log.number], log.layout.sizes[log.number]
-        own = errors[start : start + size].reshape(-1, WIDTH * _DRAWS)
-        spread = _accelerate(path, own).reshape(-1, WIDTH, _DRAWS)
         found = _accelerate(path, np.hstack([path.positions, path.turns]))
-        usual = np.sqrt(np.mean(found**2 + (spread**2).mean(axis=2), axis=0))
+        known, open_to = (
+            (_accelerate(path, errors[start : start + size].reshape(-1, WIDTH * _DRAWS)) ** 2)
+            .reshape(-1, WIDTH, _DRAWS)
+            .mean(axis=(0, 2))
+            for errors in (seen, alone)
+        )
+        usual = log.unrest * np.sqrt((np.mean(found**2, axis=0) + known) / open_to)
+        usual = np.minimum(usual, UNREST)
+        if log.navigation.accuracy.attitude_noise is not None:
+            usual[3:] = log.unrest[3:]
         learnt.append(replace(log, unrest=tuple(map(float, usual))))
     return tuple(learnt)
 
