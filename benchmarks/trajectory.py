@@ -29,6 +29,22 @@ CASES = {
         Case(log="b", passes=1),
         {"surface": 0.1, "place": 0.4, "length": 0.7},
     ),
+    "one pass, real motion, two sheets, log a": (
+        Case(passes=1, motion="real"),
+        {"surface": 0.1, "place": 0.4, "length": 0.7},
+    ),
+    "one pass, speed ± 40 %, stand-off ± 50 mm, two sheets, log c": (
+        Case(log="c", passes=1, speed_swing=0.4 / 2**0.5, stand_off_swing=0.05),
+        {"surface": 0.2, "length": 1.0},
+    ),
+    "one pass over seams and anodes, two sheets, log a": (
+        Case(relief="seams", passes=1),
+        {"surface": 0.3},
+    ),
+    "one pass over a plain plate, two sheets, log a": (
+        Case(relief="plain", passes=1),
+        {"surface": 0.1, "place to logged": 1.0},
+    ),
     "hull, two sheets, log a": (Case(log="a"), {"surface": 0.1, "place": 0.4, "length": 0.7}),
     "hull, two sheets, log b": (Case(log="b"), {"surface": 0.1, "place": 0.4, "length": 0.7}),
     "hull, two sheets, log c": (Case(log="c"), {"surface": 0.1, "place": 0.4, "length": 0.7}),

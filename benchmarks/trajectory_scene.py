@@ -28,8 +28,9 @@ LOG_RATE = 10.0
 TURN = 15.0
 """Time from one pass to the next [s]."""
 WAVES = Unrest(0.15, 6e-3, 8e-3, np.deg2rad(0.7), 5.0)
-ROUNDS, EXACT = 12, 1e-7
-"""Steps along each ray to the hull, and how small the last one is to be [m]."""
+REACH, HALVINGS = (0.2, 4.0), 25
+"""Between which distances, in usual ones, the hull lies, and how often they are halved: to 0.1 µm,
+whatever the surface's slope."""
 BASELINE = 0.2
 """From the camera to the lasers, along the way [m]."""
 
@@ -237,13 +238,14 @@ def see(hull, way, tilts, duration):
         origin = np.array([BASELINE, 0, 0])
         from_there = positions + matrices @ origin
         directions = np.einsum("nij,lj->nli", matrices, beams)
-        far = np.full(directions.shape[:2], STAND_OFF)
-        for _ in range(ROUNDS):
-            at = from_there[:, None] + far[..., None] * directions
-            off = hull.height(at[..., 0].ravel(), at[..., 1].ravel()).reshape(far.shape)
-            further = (off - at[..., 2]) / directions[..., 2]
-            far = far + further
-        assert np.abs(further).max() < EXACT, "a sheet grazes the hull"
+        near, far = (np.full(directions.shape[:2], at * STAND_OFF) for at in REACH)
+        for _ in range(HALVINGS):
+            middle = (near + far) / 2
+            at = from_there[:, None] + middle[..., None] * directions
+            depth = hull.height(at[..., 0].ravel(), at[..., 1].ravel()).reshape(far.shape)
+            near, far = np.where(at[..., 2] < depth, [middle, far], [near, middle])
+        assert near.min() > REACH[0] * STAND_OFF, "a vehicle goes into the hull"
+        assert far.max() < REACH[1] * STAND_OFF, "a sheet looks past the hull"
         at = origin + far[..., None] * beams
         world = from_there[:, None] + far[..., None] * directions
         count = far.size
