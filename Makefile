@@ -14,8 +14,9 @@ hello:
 	@test -e $(VENV)/core || echo "Once: an environment in $(VENV) with murkscan's libraries, about 0.9 GB," \
 	  "two to four minutes. Then the demo: one to two minutes."
 
+# Two runs of tests fill the cores; threads of small matrix products would only wait for one another.
 test: check
-	$(BIN)/python -m pytest -n auto --dist loadfile
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist loadfile
 
 check: $(VENV)/dev
 	$(BIN)/ruff format --check .

@@ -173,10 +173,7 @@ def _shrink_fields(image: Image) -> list[tuple[Field, Field]]:
 def _shift(field: Field, weights: Float32[np.ndarray, " taps"]) -> Field:
     """Interpolate between rows: sums of as many neighbours as there are weights."""
     count = len(field) - len(weights) + 1
-    return sum(
-        (weight * field[k : k + count] for k, weight in enumerate(weights)),
-        np.zeros((count, field.shape[1]), np.float32),
-    )
+    return cv2.filter2D(field, -1, weights[:, None], anchor=(0, 0))[:count]
 
 
 def _interpolation_weights(count: int, at: float) -> Float32[np.ndarray, " taps"]:
