@@ -1,34 +1,28 @@
 """A recording kept in a dive's file of messages: MCAP or a bag."""
 
-from collections.abc import Callable, Generator, Iterator, Sequence
-from contextlib import closing
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
-from typing import Any, final
+from typing import final
 
-import av
-import cv2
 import numpy as np
 
 from ..errors import FormatError
 from ..io.dive.contents import DiveContents, PictureIndex
-from ..io.dive.decode import decode
 from ..io.dive.open import DiveFile
-from ..io.dive.pictures import RAW, VIDEO, PictureMessage, read_picture
+from ..io.dive.pictures import RAW, VIDEO
 from ..types.arrays import Image
 from ..types.frame import Frame
 from .base import AbstractRecording, Skip, fingerprint_files, ignore_skip, spread_evenly
 from .colour import LaserColour
-from .decode import grey_from_video
+from .dive_pictures import decode_from_keyframe, pictures_near
 from .field_order import RUN, Fields, decide_order, say_order
 from .fields import FieldOrder, split_fields
 
 _FIRST = 300
 """Messages among which a picture must be, or there is none that can be decoded: ten seconds of
 video, between whose keyframes a recording may begin."""
-_NEAR = 12
-"""Pictures behind a keyframe up to which a sample is decoded on."""
 
 
 @final
@@ -64,7 +58,7 @@ class DivePictures(AbstractRecording):
         each = self.fields_per_picture
         first = start // each
         number = first
-        for found, image, why in _decode(self.file, self.index, self.colour, first):
+        for found, image, why in decode_from_keyframe(self.file, self.index, self.colour, first):
             if found < first:
                 continue
             if found > number:
@@ -84,7 +78,7 @@ class DivePictures(AbstractRecording):
         """Read about `count` frames spread evenly over the recording; see the base."""
         frames: list[Frame] = []
         for number in spread_evenly(len(self.index.times), count):
-            found, image = next(_pictures_near(self.file, self.index, self.colour, number, 1))
+            found, image = next(pictures_near(self.file, self.index, self.colour, number, 1))
             if image is not None and self._has_time(found):
                 fields = self._split(image, found)
                 frames.append(fields[len(frames) % len(fields)])
@@ -157,7 +151,7 @@ def open_dive_pictures(
 
     def runs(count: int) -> Iterator[Sequence[Image]]:
         for number in spread_evenly(max(len(index.times) - RUN, 1), count):
-            run = _pictures_near(file, index, colour, number, RUN)
+            run = pictures_near(file, index, colour, number, RUN)
             images = [image for _, image in run if image is not None]
             yield [image for image in images if image.shape == (height, width)]
 
@@ -188,7 +182,7 @@ def _refuse_unread(file: DiveFile, index: PictureIndex) -> None:
 def _first(
     file: DiveFile, index: PictureIndex, colour: LaserColour
 ) -> Iterator[tuple[int, Image, str]]:
-    for found, image, why in _decode(file, index, colour, 0):
+    for found, image, why in decode_from_keyframe(file, index, colour, 0):
         if found >= _FIRST:
             return
         if image is not None:
@@ -213,110 +207,3 @@ def _say_clock(contents: DiveContents, index: PictureIndex) -> tuple[str, ...]:
 
 def _spacing(index: PictureIndex) -> float:
     return float(np.median(np.diff(index.times))) if len(index.times) > 1 else 1.0
-
-
-def _pictures_near(
-    file: DiveFile, index: PictureIndex, colour: LaserColour, number: int, count: int
-) -> Iterator[tuple[int, Image | None]]:
-    """Decode some pictures in a row at a number, or before it, near a keyframe.
-
-    What cannot be decoded is None; there is always at least one.
-    """
-    keys = np.flatnonzero(index.is_key[: number + 1])
-    if len(keys):
-        number = min(number, int(keys[-1]) + _NEAR)
-    given = 0
-    with closing(_decode(file, index, colour, number)) as items:
-        for found, image, _ in items:
-            if found >= number:
-                yield found, image
-                given += 1
-                if given == count:
-                    return
-    if not given:
-        yield number, None
-
-
-def _decode(
-    file: DiveFile, index: PictureIndex, colour: LaserColour, first: int
-) -> Generator[tuple[int, Image | None, str], None, None]:
-    """Decode from the keyframe before a picture on: number, image or None, and why there is none.
-
-    Numbers increase; those that are missing were given up by the decoder.
-    """
-    keys = np.flatnonzero(index.is_key[: first + 1])
-    begin = int(keys[-1]) if len(keys) else 0
-    decoder: Any = None
-    empty: list[tuple[int, Image | None, str]] = []
-    for number, picture in _messages(file, index, begin):
-        if picture is None or not picture.data:
-            empty.append((number, None, "came without data: the recorder dropped it"))
-            continue
-        if picture.codec in VIDEO:
-            decoder = decoder or av.CodecContext.create(VIDEO[picture.codec], "r")
-            items = list(_feed(decoder, number, picture.data, colour))
-        else:
-            items = [_read_still(number, picture, colour)]
-        for item in items:
-            # A decoder may hold pictures back, so what came without data waits for its turn.
-            while empty and empty[0][0] < item[0]:
-                yield empty.pop(0)
-            yield item
-    last = [] if decoder is None else _feed(decoder, 0, b"", colour)
-    yield from sorted([*last, *empty], key=lambda item: item[0])
-
-
-def _messages(
-    file: DiveFile, index: PictureIndex, begin: int
-) -> Iterator[tuple[int, PictureMessage | None]]:
-    """Give the pictures from one on, each with its number."""
-    if begin >= len(index.places):
-        return
-    number = begin
-    for message in file.messages(int(index.places[begin, 0])):
-        # Found by its place: what was left out when the file was looked through has no number.
-        if (message.place, message.number) != tuple(index.places[number].tolist()):
-            continue
-        try:
-            yield number, read_picture(message.topic, decode(message))
-        except FormatError:
-            yield number, None
-        number += 1
-        if number == len(index.places):
-            return
-
-
-def _feed(
-    decoder: Any, number: int, data: bytes, colour: LaserColour
-) -> Iterator[tuple[int, Image | None, str]]:
-    """Give the decoder a packet, or with no data the end, and take what comes out."""
-    packet = None
-    if data:
-        packet = av.Packet(data)
-        packet.pts = packet.dts = number
-    try:
-        decoded = decoder.decode(packet)
-    except av.error.FFmpegError:
-        return
-    for one in decoded:
-        if one.pts is not None and not one.is_corrupt:
-            yield one.pts, grey_from_video(one, colour), ""
-
-
-def _read_still(
-    number: int, picture: PictureMessage, colour: LaserColour
-) -> tuple[int, Image | None, str]:
-    try:
-        image = picture.as_array() if picture.codec in RAW else _decode_still(picture.data)
-    except (FormatError, cv2.error):
-        image = None
-    if image is None:
-        return number, None, "cannot be decoded"
-    return number, colour.grey(image), ""
-
-
-def _decode_still(data: bytes) -> np.ndarray | None:
-    image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
-    if image is None or image.dtype not in (np.uint8, np.uint16):
-        return None
-    return np.ascontiguousarray(image[:, :, 2::-1]) if image.ndim == 3 else image
