@@ -1,6 +1,7 @@
 """How a benchmark tells its figures: a table, a page in docs/benchmarks, and a line of JSON."""
 
 import json
+import os
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -10,6 +11,9 @@ from pathlib import Path
 DOCS = Path(__file__).resolve().parents[1] / "docs" / "benchmarks"
 DATA = Path(__file__).resolve().parents[2] / "shared" / "data"
 """Real recordings, where they are beside the checkout."""
+
+# What is timed in this process takes as many threads as commands do; NumPy reads it when it comes.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
 @dataclass(frozen=True)
