@@ -205,7 +205,7 @@ def test_a_wrong_call_is_refused_before_anything_heavy_is_loaded(words):
 def test_a_scan_that_begins_loads_no_statistics_and_no_plots():
     code = (
         "import sys, murkscan.survey.scan;"
-        "heavy = ('scipy.stats', 'scipy.interpolate', 'matplotlib', 'trimesh');"
+        "heavy = ('scipy.stats', 'scipy.interpolate', 'scipy.ndimage', 'matplotlib', 'trimesh');"
         "print([m for m in heavy if m in sys.modules])"
     )
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -10,7 +10,6 @@ from typing import Any
 import av
 
 from ..errors import FormatError, InputError
-from ..io.dive.gather import read_contents
 from ..io.dive.names import is_dive
 from ..io.picture_notes import count_pages
 from ..types.arrays import Image
@@ -21,7 +20,6 @@ from .clock import Clock, usual_spacing
 from .colour import LaserColour
 from .container import open_video, picture_ticks
 from .decode import Picture, decode_pictures, grey_from_video, picture_time
-from .dive import open_dive_pictures
 from .field_order import RUN, RUNS, Fields, decide_order, say_order
 from .fields import FieldOrder
 from .folder import is_picture
@@ -76,6 +74,9 @@ def _open_one(
     path: Path, colour: LaserColour, fps: float | None, fields: Fields, topic: str | None
 ) -> AbstractRecording:
     if is_dive(path):
+        from ..io.dive.gather import read_contents
+        from .dive import open_dive_pictures
+
         if fps is not None:
             raise InputError(f"{path} has times of its own; leave out --fps.")
         return open_dive_pictures(read_contents(path), topic, colour, fields)

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
-from scipy.ndimage import map_coordinates
 from scipy.special import expit
 
 from .._kernels.ridges import pool_along
@@ -77,6 +76,8 @@ class OtherLasers:
         told = np.zeros(ridges.positions.shape)
         if not self.own:
             return np.ones(told.shape)
+        from scipy.ndimage import map_coordinates  # a fifth of a scan's imports, for two lasers
+
         lines = ridges.lines
         line, which = np.nonzero(ridges.exist)
         place = np.full(told.shape, _NOWHERE)
