@@ -95,10 +95,12 @@ def found(request) -> dict[str, np.ndarray]:
     return dict(zip(("depth", "diameter", "x", "y"), np.array(rows).swapaxes(0, 1), strict=True))
 
 
-@pytest.mark.parametrize("what", ["depth", "diameter", "x", "y"])
-def test_the_interval_holds_the_truth_whatever_the_dents_shape(found, what):
-    # Of ten intervals of 95 %, nine or ten hold the truth in 91 of 100 cases; eight in 99.
-    assert np.mean(np.abs(found[what][:, 0]) <= found[what][:, 1]) >= 0.8
+# Of ten intervals of 95 %, nine or ten hold the truth in 91 of 100 cases; eight in 99.
+@pytest.mark.parametrize(
+    ("what", "least"), [("depth", 0.9), ("diameter", 0.8), ("x", 0.8), ("y", 0.8)]
+)
+def test_the_interval_holds_the_truth_whatever_the_dents_shape(found, what, least):
+    assert np.mean(np.abs(found[what][:, 0]) <= found[what][:, 1]) >= least
 
 
 # A steep rim, which the averaged map does not follow, counts as noise of the place; the map's noise
