@@ -43,7 +43,9 @@ export function livePage(page) {
   async function show(name) {
     const told = await ask(question("api/dive", { name }));
     const { status } = told;
-    for (const part of [scene, dials, alarms]) part.hidden = !status;
+    // Of a dive that never came to a picture there is nothing to show but why.
+    const isEmpty = !status || (status.state === "failed" && !status.recorded.pictures);
+    for (const part of [scene, dials, alarms]) part.hidden = isEmpty;
     if (!status || isGone) return;
     const isStale = Date.now() / 1e3 - status.updated_s > STALE;
     const isOver = ["done", "failed"].includes(status.state);
