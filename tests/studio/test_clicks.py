@@ -10,6 +10,7 @@ import pytest
 
 pytest.importorskip("uvicorn", reason="the extra [studio] is not installed")
 
+from murkscan import load_rig
 from murkscan.survey.simulate import simulate_recording
 
 from ..scenes import hull_scene, smaller
@@ -128,6 +129,39 @@ def test_a_report_is_headed_and_acceptance_and_control_points_are_offered(opened
     page.locator("input[name=crs]").fill("EPSG:25832")
     typed = "murkscan georeference hull --control acceptance.toml --crs EPSG:25832"
     page.get_by_text(typed).wait_for()
+    assert faults == []
+
+
+def test_a_rig_that_is_not_built_yet_is_described_and_planned(opened, folder):
+    page, faults, _ = opened
+    page.get_by_role("link", name="Rig", exact=True).click()
+    page.locator("input[name=rig]").wait_for()
+    page.wait_for_function("() => document.querySelector('input[name=rig]').value !== 'rig.toml'")
+    said = {"rig": "boat.toml", "size-px": "720x576", "view-deg": "66", "baseline-mm": "300",
+            "angle-deg": "65", "temperature-c": "15", "salinity-psu": "35"}  # fmt: skip
+    for key, value in said.items():
+        page.locator(f"input[name={key}]").fill(value)
+    page.locator("select[name=kind]").select_option("window-mm")
+    page.locator("input[name=far]").fill("30")
+    page.locator("input[name=glass-mm]").fill("8")
+    page.get_by_text("--window-mm 30").or_(page.get_by_text("--glass-mm 8 ")).first.wait_for()
+    page.get_by_role("button", name="Write it").click()
+    page.locator("#job .line", has_text="describe").locator(".done").wait_for(timeout=PATIENCE)
+    assert load_rig(folder / "boat.toml").camera.port is not None
+    page.get_by_role("link", name="Plan", exact=True).click()
+    page.get_by_label("Rig", exact=True).select_option("boat.toml")
+    page.locator(".facts", has_text="300 mm, 65.0°").wait_for(timeout=PATIENCE)
+    assert faults == []
+
+
+def test_what_a_command_needs_is_asked_for_before_it_is_begun(opened):
+    page, faults, _ = opened
+    page.get_by_role("link", name="Live", exact=True).click()
+    before = page.locator("#job").inner_text()
+    page.get_by_role("button", name="Record and scan live").click()
+    assert page.locator("input[name=source]:invalid").count() == 1
+    page.wait_for_timeout(300)
+    assert page.locator("#job").inner_text() == before
     assert faults == []
 
 

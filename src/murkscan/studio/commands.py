@@ -66,6 +66,13 @@ _NEW_RIG = _flags("rig", "out")
 
 FORMS: dict[str, _Form] = {
     "calibrate board": _Form({"out": "out"}, _flags("board square-mm")),
+    "calibrate describe": _Form(
+        {},
+        _NEW_RIG | _flags(
+            "size-px view-deg baseline-mm angle-deg axis window-mm dome-radius-mm glass-mm "
+            "glass-index temperature-c salinity-psu wavelength-nm"
+        ),
+    ),
     "calibrate photograph": _Form(
         {"source": "in or text", "folder": "out"}, _flags("board boards wavelength-nm timeout-s")
     ),

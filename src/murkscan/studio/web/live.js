@@ -134,11 +134,11 @@ function startForm() {
   const form = commandForm({
     page: "live", command: "live", run: "Record and scan live",
     fields: [
-      { key: "source", label: "Source", placeholder: "rtsp://…, udp://…, stream.sdp, 0", list: [], hint: "a stream, a camera’s number, or a recording to replay" },
-      { key: "rig", label: "Rig", kind: "select" },
+      { key: "source", label: "Source", placeholder: "rtsp://…", list: [], required: true, hint: "a stream (rtsp://…, udp://…, an SDP file), a camera’s number, or a recording to replay" },
+      { key: "rig", label: "Rig", kind: "select", required: true },
       ...motionFields,
       { key: "spacing-mm", label: "Wanted spacing", unit: "mm", kind: "number", value: 5 },
-      { key: "out", label: "Folder for the dive", value: "dive" },
+      { key: "out", label: "Folder for the dive", value: "dive", required: true },
     ],
     onchange: ({ how }) => showMotion(form, how),
   });

@@ -154,10 +154,10 @@ function scanForm() {
   const form = commandForm({
     page: "look", command: "scan", run: "Scan",
     fields: [
-      { key: "recording", label: "Recording", kind: "select" },
-      { key: "rig", label: "Rig", kind: "select" },
+      { key: "recording", label: "Recording", kind: "select", required: true },
+      { key: "rig", label: "Rig", kind: "select", required: true },
       ...motionFields,
-      { key: "out", label: "Folder for the scan", value: "scan" },
+      { key: "out", label: "Folder for the scan", value: "scan", required: true },
       { key: "fps", label: "Pictures a second", kind: "number", hint: "of a folder without times.csv", more: true },
       { key: "extractor", label: "How the stripe is found", kind: "select", options: [["", "murk"], "gray-gravity", "gaussian", "steger", "threshold-skeleton"], more: true },
       { key: "mesher", label: "How the surface is made", kind: "select", options: [["", "grid"], "poisson"], more: true },

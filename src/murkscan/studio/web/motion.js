@@ -12,6 +12,10 @@ export const motionOf = ({ how, number, log }) => ({ [how]: how === "poses" || h
 // Shows the field that the way of moving needs.
 export function showMotion(form, how) {
   const isLog = how === "poses" || how === "navigation";
-  form.input("number").closest("label").hidden = isLog;
-  form.input("log").closest("label").hidden = !isLog;
+  for (const [key, isAsked] of [["number", !isLog], ["log", isLog]]) {
+    form.input(key).closest("label").hidden = !isAsked;
+  }
+  // A recording may hold the instruments' log itself.
+  form.input("number").required = !isLog;
+  form.input("log").required = how === "poses";
 }
