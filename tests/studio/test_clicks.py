@@ -180,6 +180,18 @@ def test_a_plan_follows_its_sliders(opened):
     assert faults == []
 
 
+def test_a_better_place_of_the_laser_is_found_and_tried(opened):
+    page, faults, _ = opened
+    page.get_by_label("Water by").select_option("secchi-m")
+    page.get_by_text("--secchi-m 4.3").wait_for()
+    page.get_by_role("button", name="Where would the laser better sit?").click()
+    page.get_by_role("button", name="Try it").click(timeout=PATIENCE)
+    baseline = page.locator("input[name=baseline-mm][type=number]").input_value()
+    page.get_by_text(f"--baseline-mm {baseline} --angle-deg").wait_for()
+    page.locator(".facts", has_text="as if").wait_for(timeout=PATIENCE)
+    assert faults == []
+
+
 @pytest.mark.parametrize("name", ["rig", "calibrate", "live", "look", "plan"])
 def test_pages_fit_a_phone_and_show_names_as_they_are(opened, folder, name):
     page, faults, _ = opened

@@ -105,7 +105,8 @@ FORMS: dict[str, _Form] = {
         _flags("rig", "in") | _flags("out", "out") | _flags("interlaced", "switch")
         | _flags(
             "attenuation-per-m visibility-m secchi-m from-m to-m spacing-mm frame-rate-hz albedo "
-            "power-mw exposure-ms f-number daylight-w-m2 longest-baseline-mm laser"
+            "power-mw exposure-ms f-number daylight-w-m2 longest-baseline-mm laser baseline-mm "
+            "angle-deg"
         ),
     ),
     "merge": _Form(
