@@ -116,6 +116,20 @@ def test_a_ball_is_picked_by_a_click_on_the_model(opened):
     assert faults == []
 
 
+def test_without_webgl_the_pictures_stand_for_the_model(opened):
+    page, _, _ = opened
+    other, faults = page.context.new_page(), []
+    other.on("console", lambda said: said.type == "error" and faults.append(said.text))
+    other.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
+    other.goto(f"{page.url.split('#')[0]}#look")
+    other.get_by_text("This browser has no WebGL 2").wait_for()
+    assert other.locator(".gallery img").count() >= 7
+    other.wait_for_function("() => document.querySelector('.gallery img').naturalWidth > 0")
+    assert other.locator("iframe.viewer").count() == 0
+    other.close()
+    assert faults == []
+
+
 def test_a_report_is_headed_and_acceptance_and_control_points_are_offered(opened, folder):
     page, faults, _ = opened
     (folder / "acceptance.toml").write_text("[[ball]]\n")
