@@ -118,7 +118,7 @@ def test_a_ball_is_picked_by_a_click_on_the_model(opened):
 
 def test_without_webgl_the_pictures_stand_for_the_model(opened):
     page, _, _ = opened
-    other, faults = page.context.new_page(), []
+    other, faults = page.context.browser.new_page(), []
     other.on("console", lambda said: said.type == "error" and faults.append(said.text))
     other.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
     other.goto(f"{page.url.split('#')[0]}#look")
