@@ -168,6 +168,21 @@ def test_a_rig_that_is_not_built_yet_is_described_and_planned(opened, folder):
     assert faults == []
 
 
+def test_a_dive_follows_a_vehicle_over_mavlink(opened):
+    page, faults, _ = opened
+    page.get_by_role("link", name="Live", exact=True).click()
+    page.locator("input[name=source]").fill("udp://0.0.0.0:5600")
+    page.get_by_label("How the camera moves").select_option("mavlink")
+    page.get_by_text("--mavlink 0.0.0.0:14550").wait_for()
+    page.get_by_label("Speed or step").fill("100")
+    page.get_by_text("--speed-mm-s 100").wait_for()
+    page.get_by_label("How the camera moves").select_option("speed-mm-s")
+    page.locator("code.typed", has_text="mavlink").wait_for(state="detached")
+    page.reload()
+    page.wait_for_selector("html[data-ready]")
+    assert faults == []
+
+
 def test_what_a_command_needs_is_asked_for_before_it_is_begun(opened):
     page, faults, _ = opened
     page.get_by_role("link", name="Live", exact=True).click()

@@ -137,9 +137,11 @@ function startForm() {
     fields: [
       { key: "source", label: "Source", placeholder: "rtsp://…", list: [], required: true, hint: "a stream (rtsp://…, udp://…, an SDP file), a camera’s number, or a recording to replay" },
       { key: "rig", label: "Rig", kind: "select", required: true },
-      ...motionFields,
+      ...motionFields(true),
       { key: "spacing-mm", label: "Wanted spacing", unit: "mm", kind: "number", value: 5 },
       { key: "out", label: "Folder for the dive", value: "dive", required: true },
+      { key: "extractor", label: "How the stripe is found", kind: "select", options: [["", "murk"], "gray-gravity"], hint: "gray-gravity is quicker, for clear water", more: true },
+      { key: "laser", label: "Number of the laser", hint: "all of them unless given", more: true },
     ],
     onchange: ({ how }) => showMotion(form, how),
   });

@@ -165,7 +165,7 @@ function scanForm() {
     fields: [
       { key: "recording", label: "Recording", kind: "select", required: true },
       { key: "rig", label: "Rig", kind: "select", required: true },
-      ...motionFields,
+      ...motionFields(),
       { key: "out", label: "Folder for the scan", value: "scan", required: true },
       { key: "fps", label: "Pictures a second", kind: "number", hint: "of a folder without times.csv", more: true },
       { key: "extractor", label: "How the stripe is found", kind: "select", options: [["", "murk"], "gray-gravity", "gaussian", "steger", "threshold-skeleton"], more: true },
