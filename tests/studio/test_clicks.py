@@ -6,11 +6,13 @@ import subprocess
 import sys
 from contextlib import contextmanager
 
+import numpy as np
 import pytest
 
 pytest.importorskip("uvicorn", reason="the extra [studio] is not installed")
 
 from murkscan import load_rig
+from murkscan.live import GapMap, LiveFolder, LiveStatus
 from murkscan.survey.simulate import simulate_recording
 
 from ..scenes import hull_scene, smaller
@@ -165,6 +167,23 @@ def test_a_rig_that_is_not_built_yet_is_described_and_planned(opened, folder):
     page.get_by_role("link", name="Plan", exact=True).click()
     page.get_by_label("Rig", exact=True).select_option("boat.toml")
     page.locator(".facts", has_text="300 mm, 65.0°").wait_for(timeout=PATIENCE)
+    assert faults == []
+
+
+def test_a_dive_without_a_map_shows_none_of_the_dive_before(opened, folder):
+    page, faults, _ = opened
+    mapped = GapMap(
+        np.zeros((4, 4), np.uint8), ("too fast",), 0.005, (0.0, 0.0), np.eye(3)[0], np.eye(3)[1],
+        1.0, 0.0,
+    )  # fmt: skip
+    for name in ("first", "second"):
+        LiveFolder(folder / name / "live").save_status(LiveStatus(state="live"))
+    LiveFolder(folder / "first" / "live").save_gaps(mapped)
+    page.get_by_role("link", name="Live", exact=True).click()
+    page.get_by_label("Dive", exact=True).select_option("first")
+    page.get_by_text("100 % covered").wait_for()
+    page.get_by_label("Dive", exact=True).select_option("second")
+    page.get_by_text("the map comes with the first metres").wait_for()
     assert faults == []
 
 

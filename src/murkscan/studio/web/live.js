@@ -34,7 +34,7 @@ export function livePage(page) {
     clearTimeout(timer);
     const name = dive.value;
     if (name && !isGone && !document.hidden) {
-      if (name !== shown) { shown = name; next = 0; mapped = ""; cloud?.clear(); }
+      if (name !== shown) { shown = name; next = 0; mapped = ""; cloud?.clear(); map.clear(); picture.removeAttribute("src"); delete picture.dataset.shown; }
       try { await show(name); } catch { /* the banner says that the studio is gone */ }
     }
     if (!isGone) timer = setTimeout(look, running ? 250 : 1500);
