@@ -27,10 +27,10 @@ def print_out():
 
 
 def photograph(print_out, pose):
-    """Look up each pixel's dot, of 4 x 4 rays, and blur as a lens does."""
+    """Look up each pixel's dot, of 3 x 3 rays, and blur as a lens does."""
     width, height = CAMERA.size
-    v, u = np.mgrid[: 4 * height, : 4 * width]
-    pixels = (np.stack([u.ravel(), v.ravel()], axis=1) + 0.5) / 4 - 0.5
+    v, u = np.mgrid[: 3 * height, : 3 * width]
+    pixels = (np.stack([u.ravel(), v.ravel()], axis=1) + 0.5) / 3 - 0.5
     rays = back_project(CAMERA, pixels).directions
     normal, middle = pose.rotation[:, 2], pose.translation
     points = pose.inverse() @ (rays * ((normal @ middle) / (rays @ normal))[:, None])
@@ -39,7 +39,7 @@ def photograph(print_out, pose):
     column = np.clip(x.astype(int), 0, 10 * DOTS - 1)
     row = np.clip(y.astype(int), 0, 7 * DOTS - 1)
     level = np.where(inside, 30 + 0.7 * print_out[row, column], 120.0)
-    level = level.reshape(height, 4, width, 4).mean(axis=(1, 3))
+    level = level.reshape(height, 3, width, 3).mean(axis=(1, 3))
     return np.round(cv2.GaussianBlur(level, (0, 0), 0.8)).astype(np.uint8)
 
 
