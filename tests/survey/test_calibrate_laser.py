@@ -1,6 +1,5 @@
 """The laser's line photographed under water, through a port."""
 
-import shutil
 import tomllib
 from dataclasses import replace
 
@@ -72,20 +71,10 @@ def save(path, sheet):
     return path
 
 
-def calibrate(photos, path, sheet):
+def test_the_sheet_is_found_through_the_port(photos, sheet, tmp_path):
+    path = save(tmp_path / "rig.toml", sheet)
     fan = FanKnowledge() if isinstance(sheet, Fan) else None
-    return calibrate_laser_from_photos(photos, BOARD, path, fan=fan)
-
-
-@pytest.fixture(scope="module")
-def calibrated(photos, sheet, tmp_path_factory):
-    """Give a rig file whose laser has been calibrated, and what that found."""
-    path = save(tmp_path_factory.mktemp("calibrated") / "rig.toml", sheet)
-    return path, calibrate(photos, path, sheet)
-
-
-def test_the_sheet_is_found_through_the_port(calibrated, sheet):
-    path, result = calibrated
+    result = calibrate_laser_from_photos(photos, BOARD, path, fan=fan)
     assert result.num_photos == len(TILTS)
     assert len(result.calibration.sightings) >= 4
     found = load_rig(path)
@@ -103,10 +92,12 @@ def test_the_sheet_is_found_through_the_port(calibrated, sheet):
     assert "Laser 0" in result.page.read_text("utf-8")
 
 
-def test_done_again_it_says_the_same(photos, calibrated, sheet, tmp_path):
-    path = shutil.copytree(calibrated[0].parent, tmp_path / "again") / "rig.toml"
+def test_done_again_it_says_the_same(photos, sheet, tmp_path):
+    path = save(tmp_path / "rig.toml", sheet)
+    fan = FanKnowledge() if isinstance(sheet, Fan) else None
+    calibrate_laser_from_photos(photos, BOARD, path, fan=fan)
     first = load_rig(path)
-    calibrate(photos, path, sheet)
+    calibrate_laser_from_photos(photos, BOARD, path, fan=fan)
     second = load_rig(path)
     assert second.covariance.names == first.covariance.names
     np.testing.assert_allclose(second.covariance.sigma, first.covariance.sigma, rtol=1e-3)
@@ -129,7 +120,8 @@ def test_a_rig_on_a_vehicle_gets_a_laser_too(photos, sheet, tmp_path, is_known):
         )
         rig = replace(rig, covariance=both)
     save_rig(path, rig)
-    calibrate(photos, path, sheet)
+    fan = FanKnowledge() if isinstance(sheet, Fan) else None
+    calibrate_laser_from_photos(photos, BOARD, path, fan=fan)
     found = load_rig(path)
     np.testing.assert_allclose(found.vehicle_from_camera.translation, [0.3, 0.0, 0.1], atol=1e-9)
     # What nothing was photographed of stays as it was known.

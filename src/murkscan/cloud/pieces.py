@@ -1,7 +1,8 @@
 """Which points of a scan hang together."""
 
 import numpy as np
-import scipy
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from ..geometry.grid import ScanGrid
 from ..types.arrays import Indices
@@ -24,6 +25,5 @@ def number_pieces(grid: ScanGrid) -> Indices:
         ours.append(touching.astype(np.int32))
         theirs.append(there[touching].astype(np.int32))
     pairs = (np.concatenate(ours), np.concatenate(theirs))
-    shape = (len(here), len(here))
-    touches = scipy.sparse.coo_array((np.ones(len(pairs[0]), bool), pairs), shape=shape)
-    return scipy.sparse.csgraph.connected_components(touches, directed=False)[1].astype(np.int64)
+    touches = coo_array((np.ones(len(pairs[0]), bool), pairs), shape=(len(here), len(here)))
+    return connected_components(touches, directed=False)[1].astype(np.int64)

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from ..types.arrays import Vector
 from ..types.measured import Measured
@@ -55,7 +56,7 @@ def measure_poses(log: Trajectory, accuracy: NavigationAccuracy) -> Navigation |
 
     Without noise of positions stated they count as summed up from velocities along the attitude.
     """
-    turns = log.attitudes
+    turns = Rotation.from_quat(log.quaternions, scalar_first=True)
     attitude = Readings(log.times, turns.as_euler("ZYX")[:, ::-1])
     navigation = Navigation(
         accuracy, attitude=attitude, depth=Readings(log.times, log.positions[:, 2:])
@@ -66,7 +67,7 @@ def measure_poses(log: Trajectory, accuracy: NavigationAccuracy) -> Navigation |
         return None
     steps = np.diff(log.positions, axis=0) / np.diff(log.times)[:, None]
     middles = (log.times[1:] + log.times[:-1]) / 2
-    attitudes = log.at(middles).attitudes
+    attitudes = Rotation.from_quat(log.at(middles).quaternions, scalar_first=True)
     return replace(navigation, velocity=Readings(middles, attitudes.inv().apply(steps)))
 
 

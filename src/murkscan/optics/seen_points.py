@@ -5,6 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 from jaxtyping import Float
+from scipy.spatial.transform import Rotation
 
 from ..geometry.stripe_blur import Sight
 from ..types.arrays import Pixels, Points, Ratios, Scalars, SmallNumbers
@@ -86,7 +87,8 @@ def shift_points(
     """
     shifts = _shifts_in_rig(pixels, laser, rig)
     moments, which = np.unique(times, return_inverse=True)
-    world_from_rig = trajectory.at(moments).attitudes.as_matrix()
+    attitudes = Rotation.from_quat(trajectory.at(moments).quaternions, scalar_first=True)
+    world_from_rig = attitudes.as_matrix()
     if rig.vehicle_from_camera is not None:
         world_from_rig = world_from_rig @ rig.vehicle_from_camera.rotation.T
     return world_from_rig[which] @ shifts

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from ..types.arrays import Matrix3, Vector
 from ..types.trajectory import Trajectory
@@ -52,7 +53,7 @@ def standard_views(trajectory: Trajectory | None = None) -> tuple[View, ...]:
     world_from_front, eye = np.eye(3), np.zeros(3)
     if trajectory is not None:
         eye = trajectory.positions.mean(axis=0)
-        attitudes = trajectory.attitudes
+        attitudes = Rotation.from_quat(trajectory.quaternions, scalar_first=True)
         world_from_front = attitudes.mean().as_matrix()
     return tuple(
         View(name, _look(np.array(forward, float), np.array(up, float)) @ world_from_front.T, eye)

@@ -79,3 +79,29 @@ def test_a_place_that_was_measured_once_holds_whatever_the_clock(late):
     # The fix, and 0.5 s of the clock at 0.1 m/s along the way; 200 draws know each to 5 %.
     np.testing.assert_allclose(sigma, [np.hypot(0.03, 0.05), 0.03], rtol=0.2)
     assert np.abs(begin.positions[0, 1] - 0.7) < 1e-3
+
+
+@pytest.mark.parametrize("per_piece", [0.5, 1, 2])
+def test_a_log_that_is_read_at_the_knots_leaves_nothing_free(per_piece):
+    """Controls that alternate have no velocity at the knots; a fix that is off would bring them."""
+    accuracy = NavigationAccuracy(velocity_noise=3e-3, attitude_noise=2e-3, position_noise=0.03)
+    times = np.arange(0, DURATION, SETTINGS.knot_step / per_piece)
+    still = np.zeros((len(times), 3))
+    log = Navigation(
+        accuracy,
+        attitude=Readings(times, still),
+        velocity=Readings(times, still + np.array([0.1, 0, 0])),
+        position=Readings(times[:1], np.array([[0.0, 0.05, 0.0]])),
+    )
+    path = first_path(log, 0.0, DURATION, SETTINGS.knot_step)
+    layout = Layout.of([path], [0])
+    logs = (Log(0, log, layout, 0.0),)
+    state = improve(State((path,), np.zeros(layout.count)), logs, [], SETTINGS, steps=4)
+    draws = 100
+    drawn = draw_errors(state, logs, [], SETTINGS, count=draws)[: layout.sizes[0]]
+    begin = state.paths[0].as_trajectory(
+        np.array([0.0, 0.5]), drawn.reshape(-1, 6, draws) / np.sqrt(draws)
+    )
+    moved = np.linalg.norm(begin.errors[1, :3] - begin.errors[0, :3], axis=1)
+    # Half a second at 3 mm/s a reading, and at most 0.2 m/s² between two of them.
+    assert np.all(moved < 3e-3), moved

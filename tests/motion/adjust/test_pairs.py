@@ -9,7 +9,8 @@ from murkscan.motion.adjust import AdjustSettings, Pass
 from murkscan.motion.adjust.checks import compare_passes
 from murkscan.motion.adjust.first_path import first_path, fit_path
 from murkscan.motion.adjust.legs import cut_legs, make_facets
-from murkscan.motion.adjust.pairs import make_side, pair_facets, steady_normals
+from murkscan.motion.adjust.normals import steady_normals
+from murkscan.motion.adjust.pairs import make_side, pair_facets
 from murkscan.motion.adjust.solve import State
 from murkscan.motion.adjust.strays import compare_legs, drop_strays
 from murkscan.motion.adjust.ties import Ties, as_seen, linearise
@@ -134,6 +135,18 @@ def test_a_plain_surface_shows_no_slopes():
     assert np.sqrt(np.mean(normals[:, :2] ** 2)) < 0.2 * np.sqrt(
         np.mean(facets.normals[:, :2] ** 2)
     )
+
+
+def test_what_a_heaving_vehicle_makes_of_a_plain_surface_shows_no_slopes():
+    one = see(0, noise=1e-4)
+    depth = STAND_OFF + 1e-4 * np.random.default_rng(5).normal(size=len(one.points))
+    # The way does not know of these heaves, whose slopes are these.
+    depth += 0.3e-3 * np.sin(2 * np.pi * one.times[one.profile] / 2.5)
+    slopes = 0.3e-3 * 2 * np.pi / (2.5 * SPEED) / np.sqrt(2)
+    heaving = replace(one, points=np.stack([sheet(depth), one.points[:, 1], depth], axis=1))
+    _, smooth = steady_normals(facets_of(heaving, 0)[0])
+    # Two heaves and a half bend the surface evenly by as much as a tenth of them.
+    assert np.std(smooth[:, 0] / smooth[:, 2]) < 0.2 * slopes
 
 
 def test_a_stretch_that_lies_beside_its_like_is_counted_in_time():

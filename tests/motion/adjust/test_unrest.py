@@ -24,8 +24,9 @@ def restless():
     """Give a path whose control values bend by as much, at random."""
     path = first_path(Navigation(NavigationAccuracy()), 0.0, DURATION, SETTINGS.knot_step)
     bends = np.random.default_rng(0).normal(size=(path.knots.num_controls, 6)) * TRUE
-    # Of a cubic spline, the mean of two neighbouring second differences bends its piece.
-    moved = np.cumsum(np.cumsum(np.sqrt(2) * bends * SETTINGS.knot_step**2, axis=0), axis=0)
+    # An acceleration lasts for two pieces of a cubic spline: three second differences, of which the
+    # middle one counts twice, bend them.
+    moved = np.cumsum(np.cumsum(np.sqrt(8 / 3) * bends * SETTINGS.knot_step**2, axis=0), axis=0)
     return replace(path, positions=moved[:, :3], turns=moved[:, 3:])
 
 

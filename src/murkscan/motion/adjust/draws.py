@@ -15,6 +15,8 @@ from .ties import Ties, TieSums, as_placed, linearise, sum_ties
 _TOGETHER = 0.02
 """Size of a tile of the surface whose ties err together [m]: planes share points over three cells
 of 5 mm."""
+_PULLS = 3
+"""Directions in which a tile pulls."""
 _LEAST_STIFF = 0.2
 """Share of their weights that ties hold at least: with less, most of them are no normal noise."""
 
@@ -111,6 +113,8 @@ def _unfitted(num: int, settled: float) -> float:
 
     Of forces f that err as the logs state, with covariance N_log, the mean of f·N⁻¹f is the trace
     of N⁻¹N_log: the count of unknowns that logs settle (Hutchinson, 1990). Ties settle the others.
+    A tile pulls in three directions, by its heights and by its slopes both ways: one unknown that
+    is fitted takes one of the three.
 
     Args:
         num: Independent tiles.
@@ -120,4 +124,5 @@ def _unfitted(num: int, settled: float) -> float:
         MacKinnon and White, Some heteroskedasticity-consistent covariance matrix estimators,
         Journal of Econometrics 29, 1985: HC1.
     """
-    return float(np.sqrt(num / max(num - settled, num / 4)))
+    pulls = _PULLS * num
+    return float(np.sqrt(pulls / max(pulls - settled, pulls / 4)))

@@ -24,6 +24,9 @@ UNREST = (0.2, 0.2, 0.2, 0.4, 0.4, 0.4)
 """Usual acceleration of a vehicle that scans along each of the world's axes [m/s²], and of its turn
 about each [rad/s²]: a thruster's push on a vehicle of some ten kilograms. Weak: it only holds what
 nothing else does, until the scan has shown how restless its vehicle is."""
+LASTING = 0.2
+"""How long an acceleration lasts [s]: over it one is independent of the next, whatever the length
+of a spline's pieces."""
 _SAMPLE = 0.1
 """Time between the points at which an assumption is made where no instrument measured [s]."""
 _FIXED = 1e-9
@@ -265,10 +268,10 @@ def prior_equations(logs: Sequence[Log], unknowns: Float[np.ndarray, " u"]) -> E
 
 def _steady(path: Path, start: int, width: int, unrest: Sequence[float]) -> Equations:
     """Hold accelerations near 0: weakly, so that nothing stays without any equation."""
-    times = path.knots.middles
+    times = path.knots.quadrature_times
     first, weights = path.knots.weights(times, derivative=2)
     slopes = weights[:, :, None, None] * np.eye(6)
-    sigma = np.array(unrest)
+    sigma = np.array(unrest) * np.sqrt(2 * LASTING / path.knots.step)
     change = np.hstack(
         [
             evaluate(path.knots, path.positions, times, derivative=2),

@@ -9,14 +9,13 @@ from scipy.spatial import cKDTree
 
 from ...types.arrays import Directions, Indices, Mask, Points, Scalars
 from .legs import Facets, Leg, make_facets
+from .normals import steady_normals
 from .path import Path
 from .ties import Ties
 from .tiles import make_heights
 
 Rows = Bool[np.ndarray, "rows"]
 """Which rows of a leg's cells."""
-_PATCH = 16
-"""Cells of a patch, along and across, over which a surface counts as plain or rough as a whole."""
 _AGREE = 0.8
 """Cosine of the angle between normals up to which two facets may be of one surface."""
 _BEYOND = 1.0
@@ -24,12 +23,8 @@ _BEYOND = 1.0
 _GOLDEN = (5**0.5 - 1) / 2
 _SLOWEST = 0.01
 """Speed of a line over the surface below which it is not known where it was when [m/s]."""
-_STEEPEST = 2.0
-"""Most by which slopes are taken to be flattened: bumps of four cells."""
 _STEEP = 0.3
 """Cosine of the angle between a sheet and a surface's normal below which it only grazes it."""
-_CERTAIN = 2.0
-"""How many times over the noise of normals a slope must stand to count."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,71 +99,6 @@ def _delays(facets: Facets) -> Float[np.ndarray, "r 3"]:
     pace = np.copysign(np.maximum(np.abs(pace), _SLOWEST), pace)
     delays[there] = across[there] / pace[:, None]
     return delays
-
-
-def steady_normals(facets: Facets) -> tuple[Directions, Directions]:
-    """Compute normals without noise, and the mean normals of patches.
-
-    On a plain surface normals differ by noise only, and would seem to fix the shift along it: the
-    share of a slope that noise explains is taken away (James and Stein, Estimation with quadratic
-    loss, 1961), patch by patch. On a rough one planes over some cells are flatter than what they
-    stand for, which is put right then.
-    """
-    leg = facets.leg
-    patches = -(-leg.num_columns // _PATCH)
-    patch = (facets.row // _PATCH) * patches + facets.column // _PATCH
-    _, which = np.unique(patch, return_inverse=True)
-    count = np.bincount(which)
-    mean = np.stack([np.bincount(which, n) for n in facets.normals.T], axis=1) / count[:, None]
-    off = facets.normals - mean[which]
-    seen = np.bincount(which, np.einsum("ni,ni->n", off, off)) / count
-    noise = np.bincount(which, facets.variance * facets.slope_variance.sum(axis=1)) / count
-    share = np.clip(1 - _CERTAIN * noise / np.maximum(seen, 1e-300), 0, 1)
-    steady = mean[which] + _steepen(facets, mean[which], share[which, None] * off)
-    return (
-        steady / np.linalg.norm(steady, axis=1, keepdims=True),
-        mean[which] / np.linalg.norm(mean[which], axis=1, keepdims=True),
-    )
-
-
-def _steepen(facets: Facets, mean: Directions, off: Directions) -> Directions:
-    """Make slopes as steep as the heights of neighbouring cells say.
-
-    A plane over three cells is flatter than bumps of some cells' width are. Where two legs' cells
-    lie aside of one another by the same over a stretch, as of a vehicle that keeps its speed, the
-    rest would look like a shift of the leg, anew each time that facets are paired.
-    """
-    steep = off.copy()
-    for axis, step in enumerate(((1, 0), (0, 1))):
-        along = facets.axes[:, axis]
-        part = np.einsum("ni,ni->n", off, along)[:, None] * along
-        steep += (_flatness(facets, mean, off, step) - 1) * part
-    return steep
-
-
-def _flatness(facets: Facets, mean: Directions, off: Directions, step: tuple[int, int]) -> float:
-    """Give by what slopes along rows or columns are to be multiplied.
-
-    Between a cell and its next neighbour, and the one after, the mean slope is to explain the
-    difference of their heights; from both follows what would hold close by (Richardson, The
-    deferred approach to the limit, 1927).
-    """
-    near, far = (_explain(facets, mean, off, (n * step[0], n * step[1])) for n in (1, 2))
-    return float(np.clip((4 * near - far) / 3, 1.0, _STEEPEST))
-
-
-def _explain(facets: Facets, mean: Directions, off: Directions, step: tuple[int, int]) -> float:
-    """Give the factor of slopes that explains heights of facets some cells apart best."""
-    leg = facets.leg
-    place = np.full((len(leg.row_times) + step[0], leg.num_columns + step[1]), -1)
-    place[facets.row, facets.column] = np.arange(len(facets))
-    other = place[facets.row + step[0], facets.column + step[1]]
-    one = np.flatnonzero(other >= 0)
-    other = other[one]
-    between = facets.points[other] - facets.points[one]
-    plain, rough = (np.einsum("ni,ni->n", n[one] + n[other], between) / 2 for n in (mean, off))
-    square = float(rough @ rough)
-    return -float(plain @ rough) / square if square > 0 else 1.0
 
 
 def pair_facets(a: Side, b: Side, reach: float, most: int, *, bumps_match: Rows) -> Ties:

@@ -9,10 +9,10 @@ import numpy as np
 class AdjustSettings:
     """Settings of `adjust_passes`."""
 
-    knot_step: float = 0.2
-    """Length of a spline's piece [s]: at 0.4 s pieces leave 0.1 mm (RMS) of how a small vehicle
-    moves in waves of up to 1 Hz, and ties of some hundredths of a millimetre then bend the way by
-    millimetres where they cannot tell; at 0.2 s 0.005 mm."""
+    knot_step: float = 0.1
+    """Length of a spline's piece [s]: at 0.2 s pieces leave 0.2 mm and 0.03° (RMS) of how the real
+    vehicles of `docs/benchmarks/trajectory.md` move, and ties of some hundredths of a millimetre
+    then bend the way by millimetres where they cannot tell; at 0.1 s 0.01 mm and 0.002°."""
     speed_wander: float = 0.2
     """How a speed that is only about known wanders, as a share of it, and velocity across it."""
     attitude_wander: float = np.deg2rad(3.0)

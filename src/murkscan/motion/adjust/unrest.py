@@ -7,13 +7,15 @@ import numpy as np
 from jaxtyping import Float
 
 from .draws import draw_errors
-from .log_terms import UNREST, Log
+from .log_terms import LASTING, UNREST, Log
 from .path import WIDTH, Path
 from .settings import AdjustSettings
 from .solve import State
 from .spline import evaluate
 from .ties import Ties
 
+_WITHIN = 1e-9
+"""Rounding of a path's end [s]."""
 _DRAWS = 8
 """Errors that are drawn: each is of a hundred accelerations or more."""
 
@@ -55,4 +57,6 @@ def learn_unrest(
 
 
 def _accelerate(path: Path, controls: Float[np.ndarray, "k d"]) -> Float[np.ndarray, "n d"]:
-    return evaluate(path.knots, controls, path.knots.middles, derivative=2)
+    """Compute mean accelerations over as long as one lasts: shorter pieces show no larger ones."""
+    times = np.arange(path.knots.start, path.knots.end + _WITHIN, LASTING)
+    return np.diff(evaluate(path.knots, controls, times, derivative=1), axis=0) / LASTING
