@@ -4,6 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from murkscan.capture import LaserColour
+from murkscan.capture.colour import EachColour
 
 wavelengths = st.floats(380e-9, 1100e-9)
 
@@ -77,3 +78,10 @@ def test_the_coloured_fringe_of_a_white_area_is_no_line():
     picture[60, 20:60] = (220, 150, 220)
     grey = contrast.grey(picture)
     assert grey[:, 21:59].max() == 5
+
+
+def test_each_colour_stands_beside_the_others():
+    image = np.arange(24, dtype=np.uint8).reshape(2, 4, 3)
+    np.testing.assert_array_equal(EachColour().grey(image).reshape(2, 4, 3), image)
+    grey = EachColour().grey(image[..., 1]).reshape(2, 4, 3)
+    np.testing.assert_array_equal(grey, np.dstack([image[..., 1]] * 3))

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Float, Shaped
 
-from ..types.arrays import Image, Vector
+from ..types.arrays import Vector
 from .base import AbstractRecording
-from .colour import LaserColour, filter_response
+from .colour import EachColour, LaserColour, filter_response
 
 _PICTURES = 8
 """Pictures that are looked at: they cost a tenth of a second at PAL size."""
@@ -49,7 +49,7 @@ def see_by_colour(recording: AbstractRecording, wavelength: float) -> AbstractRe
         Manolakis, Shaw, Detection algorithms for hyperspectral imaging applications, IEEE Signal
         Processing Magazine 19, 2002 (the filter).
     """
-    pictures = _sample_colours(recording, wavelength)
+    pictures = _sample_colours(recording)
     if pictures is None:
         return recording
     mean = LaserColour.mean(wavelength)
@@ -63,21 +63,16 @@ def see_by_colour(recording: AbstractRecording, wavelength: float) -> AbstractRe
     return recording.in_colour(contrast, said)
 
 
-def _sample_colours(
-    recording: AbstractRecording, wavelength: float
-) -> list[Shaped[np.ndarray, "h w 3"]] | None:
+def _sample_colours(recording: AbstractRecording) -> list[Shaped[np.ndarray, "h w 3"]] | None:
     """Read some pictures in colour; None where red and blue are the same."""
-    red = LaserColour(wavelength, (1.0, 0.0, 0.0))
-    green = LaserColour(wavelength, (0.0, 1.0, 0.0))
-    blue = LaserColour(wavelength, (0.0, 0.0, 1.0))
+    seen = recording.in_colour(EachColour())
 
-    def see(colour: LaserColour, count: int) -> list[Image]:
-        return [frame.image for frame in recording.in_colour(colour).sample(count)]
+    def see(count: int) -> list[Shaped[np.ndarray, "h w 3"]]:
+        return [one.image.reshape(len(one.image), -1, 3) for one in seen.sample(count)]
 
-    if all(map(np.array_equal, see(red, 1), see(blue, 1))):
+    if all(np.array_equal(one[..., 0], one[..., 2]) for one in see(1)):
         return None
-    channels = [see(colour, _PICTURES) for colour in (red, green, blue)]
-    return [np.dstack(one) for one in zip(*channels, strict=True)]
+    return see(_PICTURES)
 
 
 def _differences(image: Shaped[np.ndarray, "*picture"]) -> Float[np.ndarray, "*many"]:

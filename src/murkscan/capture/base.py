@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ..types.frame import Frame
-from .colour import LaserColour
+from .colour import AbstractColour
 from .fields import FieldOrder
 
 
@@ -87,7 +87,7 @@ class AbstractRecording(abc.ABC):
         """
 
     @abc.abstractmethod
-    def in_colour(self, colour: LaserColour, *remarks: str) -> "AbstractRecording":
+    def in_colour(self, colour: AbstractColour, *remarks: str) -> "AbstractRecording":
         """Give the same recording with other grey levels, and with remarks on them."""
 
     @abc.abstractmethod

@@ -13,7 +13,7 @@ import numpy as np
 from ..errors import FormatError, InputError
 from ..types.frame import Frame
 from .base import AbstractRecording, Skip, fingerprint_files, ignore_skip, spread_evenly
-from .colour import LaserColour
+from .colour import AbstractColour
 from .container import demux_video, is_avi, open_video, picture_ticks
 from .fields import FieldOrder
 from .folder import is_picture, natural_key
@@ -123,7 +123,7 @@ class Chapters(AbstractRecording):
             for frame in part.sample(some)
         ]
 
-    def in_colour(self, colour: LaserColour, *remarks: str) -> AbstractRecording:
+    def in_colour(self, colour: AbstractColour, *remarks: str) -> AbstractRecording:
         """Give the same recording with other grey levels; see the base."""
         parts = tuple(part.in_colour(colour) for part in self.parts)
         return replace(self, parts=parts, remarks=(*self.remarks, *remarks))

@@ -1,9 +1,10 @@
 """From the colours of a picture to grey levels in which the laser's light shows."""
 
+import abc
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import final
+from typing import ClassVar, final
 
 import cv2
 import numpy as np
@@ -30,9 +31,47 @@ _FRINGE = 7
 pixels come from up to 2 px away, and the lens's own blur is another."""
 
 
+class AbstractColour(abc.ABC):
+    """How the colours of a picture become grey levels."""
+
+    channels: ClassVar[int] = 1
+    """Grey levels of a pixel, one beside the other."""
+
+    @property
+    @abc.abstractmethod
+    def is_luma(self) -> bool:
+        """Tell whether the luma of YUV video serves as well."""
+
+    @abc.abstractmethod
+    def grey(self, image: Shaped[np.ndarray, "h w *rgb"]) -> Shaped[np.ndarray, "h levels"]:
+        """Give a picture's grey levels, of the same bit depth, rounded.
+
+        Args:
+            image: Red, green and blue of 8 or 16 bit, or a picture without colours.
+        """
+
+
 @final
 @dataclass(frozen=True)
-class LaserColour:
+class EachColour(AbstractColour):
+    """Red, green and blue as they are, side by side: to look at the colours themselves."""
+
+    channels: ClassVar[int] = 3
+
+    @property
+    def is_luma(self) -> bool:
+        """Tell whether the luma of YUV video serves as well: it has no colours."""
+        return False
+
+    def grey(self, image: Shaped[np.ndarray, "h w *rgb"]) -> Shaped[np.ndarray, "h levels"]:
+        """Give three grey levels a pixel; see the base. Without colours they are the same."""
+        colours = np.dstack([image] * 3) if image.ndim == 2 else image
+        return np.ascontiguousarray(colours).reshape(len(image), -1)
+
+
+@final
+@dataclass(frozen=True)
+class LaserColour(AbstractColour):
     """How much each colour of a pixel counts for the laser's light.
 
     Two kinds are in use. A mean, with weights above 0, is best in the dark: it collects all of the
@@ -71,11 +110,7 @@ class LaserColour:
         return is_green and self == LaserColour.mean(self.wavelength)
 
     def grey(self, image: Shaped[np.ndarray, "h w *rgb"]) -> Image:
-        """Give a picture's grey levels, of the same bit depth, rounded.
-
-        Args:
-            image: Red, green and blue of 8 or 16 bit; a picture without colours stays as it is.
-        """
+        """Give a picture's grey levels; see the base. Without colours it stays as it is."""
         if image.ndim == 2:
             return image
         top = np.iinfo(image.dtype).max

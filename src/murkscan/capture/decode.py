@@ -12,7 +12,7 @@ import av
 import numpy as np
 
 from ..types.arrays import Image
-from .colour import LaserColour
+from .colour import AbstractColour
 from .container import demux_video, is_avi, picture_ticks
 
 _MOST_REORDERED = 16
@@ -219,7 +219,7 @@ def picture_time(decoded: Any) -> float:
     return math.nan if decoded.pts is None else float(decoded.pts * decoded.time_base)
 
 
-def grey_from_video(decoded: Any, colour: LaserColour) -> Image:
+def grey_from_video(decoded: Any, colour: AbstractColour) -> Image:
     """Give a decoded picture as grey levels of 8 bit, or of up to 16 in 16.
 
     YUV with a green laser gives the Y plane as it is: chroma has half the resolution, and
@@ -232,7 +232,7 @@ def grey_from_video(decoded: Any, colour: LaserColour) -> Image:
     form = decoded.format
     luma = not (form.is_rgb or form.is_bayer or form.has_palette)
     if luma and (colour.is_luma or len(form.components) < 3):
-        return _luma(decoded)
+        return colour.grey(_luma(decoded))
     # A Bayer format counts the bits of its pattern of four in three odd parts.
     deep = form.bits_per_pixel > 8 if form.is_bayer else form.components[0].bits > 8
     return colour.grey(decoded.to_ndarray(format="rgb48le" if deep else "rgb24"))

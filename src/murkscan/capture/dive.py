@@ -15,7 +15,7 @@ from ..io.dive.pictures import RAW, VIDEO
 from ..types.arrays import Image
 from ..types.frame import Frame
 from .base import AbstractRecording, Skip, fingerprint_files, ignore_skip, spread_evenly
-from .colour import LaserColour
+from .colour import AbstractColour
 from .dive_pictures import decode_from_keyframe, pictures_near
 from .field_order import RUN, Fields, decide_order, say_order
 from .fields import FieldOrder, split_fields
@@ -38,7 +38,7 @@ class DivePictures(AbstractRecording):
     remarks: tuple[str, ...]
     file: DiveFile
     index: PictureIndex
-    colour: LaserColour
+    colour: AbstractColour
     """How colours become grey levels."""
 
     @property
@@ -88,7 +88,7 @@ class DivePictures(AbstractRecording):
             raise FormatError(f"No picture in {self.path} can be decoded.")
         return sorted(frames, key=lambda frame: frame.index)
 
-    def in_colour(self, colour: LaserColour, *remarks: str) -> AbstractRecording:
+    def in_colour(self, colour: AbstractColour, *remarks: str) -> AbstractRecording:
         """Give the same recording with other grey levels; see the base."""
         return replace(self, colour=colour, remarks=(*self.remarks, *remarks))
 
@@ -104,7 +104,7 @@ class DivePictures(AbstractRecording):
         return number == 0 or bool(times[number] > times[max(number - 100, 0) : number].max())
 
     def _split(self, image: Image, number: int) -> list[Frame]:
-        height, width = image.shape
+        height, width = len(image), image.shape[1] // self.colour.channels
         if (width, height) != self.size:
             raise FormatError(
                 f"Picture {number} of {self.path} is {width} x {height} px, but the recording is "
@@ -131,7 +131,7 @@ class DivePictures(AbstractRecording):
 
 
 def open_dive_pictures(
-    contents: DiveContents, topic: str | None, colour: LaserColour, fields: Fields
+    contents: DiveContents, topic: str | None, colour: AbstractColour, fields: Fields
 ) -> DivePictures:
     """Open the pictures of a dive's file; see `open_recording`.
 
@@ -180,7 +180,7 @@ def _refuse_unread(file: DiveFile, index: PictureIndex) -> None:
 
 
 def _first(
-    file: DiveFile, index: PictureIndex, colour: LaserColour
+    file: DiveFile, index: PictureIndex, colour: AbstractColour
 ) -> Iterator[tuple[int, Image, str]]:
     for found, image, why in decode_from_keyframe(file, index, colour, 0):
         if found >= _FIRST:

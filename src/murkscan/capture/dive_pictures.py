@@ -14,7 +14,7 @@ from ..io.dive.decode import decode
 from ..io.dive.open import DiveFile
 from ..io.dive.pictures import RAW, VIDEO, PictureMessage, read_picture
 from ..types.arrays import Image
-from .colour import LaserColour
+from .colour import AbstractColour
 from .decode import grey_from_video
 
 _NEAR = 12
@@ -22,7 +22,7 @@ _NEAR = 12
 
 
 def pictures_near(
-    file: DiveFile, index: PictureIndex, colour: LaserColour, number: int, count: int
+    file: DiveFile, index: PictureIndex, colour: AbstractColour, number: int, count: int
 ) -> Iterator[tuple[int, Image | None]]:
     """Decode some pictures in a row at a number, or before it, near a keyframe.
 
@@ -44,7 +44,7 @@ def pictures_near(
 
 
 def decode_from_keyframe(
-    file: DiveFile, index: PictureIndex, colour: LaserColour, first: int
+    file: DiveFile, index: PictureIndex, colour: AbstractColour, first: int
 ) -> Generator[tuple[int, Image | None, str], None, None]:
     """Decode from the keyframe before a picture on: number, image or None, and why there is none.
 
@@ -93,7 +93,7 @@ def _messages(
 
 
 def _feed(
-    decoder: Any, number: int, data: bytes, colour: LaserColour
+    decoder: Any, number: int, data: bytes, colour: AbstractColour
 ) -> Iterator[tuple[int, Image | None, str]]:
     """Give the decoder a packet, or with no data the end, and take what comes out."""
     packet = None
@@ -110,7 +110,7 @@ def _feed(
 
 
 def _read_still(
-    number: int, picture: PictureMessage, colour: LaserColour
+    number: int, picture: PictureMessage, colour: AbstractColour
 ) -> tuple[int, Image | None, str]:
     try:
         image = picture.as_array() if picture.codec in RAW else _decode_still(picture.data)

@@ -13,7 +13,7 @@ from ..io.images import NOT_READ, read_image
 from ..types.arrays import Image
 from ..types.frame import Frame
 from .base import AbstractRecording, Skip, fingerprint_files, ignore_skip, spread_evenly
-from .colour import LaserColour
+from .colour import AbstractColour
 from .fields import FieldOrder, split_fields
 
 _SUFFIXES = (
@@ -83,7 +83,7 @@ class ImageFolder(AbstractRecording):
     """Time of each picture [s], increasing, or its number where it has none."""
     spacing: float
     """Usual time between two pictures [s]; 1 where they have no times."""
-    colour: LaserColour
+    colour: AbstractColour
     """How colours become grey levels."""
 
     @property
@@ -128,7 +128,7 @@ class ImageFolder(AbstractRecording):
             raise FormatError(f"None of the {len(self.files)} pictures in {self.path} can be read.")
         return frames
 
-    def in_colour(self, colour: LaserColour, *remarks: str) -> AbstractRecording:
+    def in_colour(self, colour: AbstractColour, *remarks: str) -> AbstractRecording:
         """Give the same recording with other grey levels; see the base."""
         return replace(self, colour=colour, remarks=(*self.remarks, *remarks))
 
@@ -143,7 +143,7 @@ class ImageFolder(AbstractRecording):
         return read_grey(file, self.colour, self.pages[picture])
 
     def _split(self, image: Image, picture: int) -> list[Frame]:
-        height, width = image.shape
+        height, width = len(image), image.shape[1] // self.colour.channels
         if (width, height) != self.size:
             raise FormatError(
                 f"{locate(self.path, self.files[picture])} is {width} x {height} px, but the "
@@ -170,7 +170,7 @@ def locate(path: Path, name: str) -> Path:
     return path if path.name == name and path.is_file() else path / name
 
 
-def read_grey(path: Path, colour: LaserColour, page: int = 0) -> Image:
+def read_grey(path: Path, colour: AbstractColour, page: int = 0) -> Image:
     """Read a picture as grey levels, 8 or 16 bit.
 
     Raises:

@@ -14,7 +14,7 @@ from ..io.times_csv import read_times
 from ..types.arrays import Image
 from .base import spread_evenly
 from .clock import usual_spacing
-from .colour import LaserColour
+from .colour import AbstractColour
 from .field_order import RUN, Fields, decide_order, say_order
 from .folder import TIMES, ImageFolder, list_pictures, locate, read_grey
 
@@ -25,7 +25,9 @@ _CLOCK = re.compile(r"\d{10,19}(\.\d+)?")
 """A time since 1970 in a picture's name: seconds, or one of the smaller units."""
 
 
-def open_folder(path: Path, colour: LaserColour, fps: float | None, fields: Fields) -> ImageFolder:
+def open_folder(
+    path: Path, colour: AbstractColour, fps: float | None, fields: Fields
+) -> ImageFolder:
     """Open a folder of pictures, or a TIFF of several pages; see `open_recording`."""
     names = list_pictures(path) if path.is_dir() else (path.name,)
     files, pages = _turn_pages(path, names)
@@ -127,7 +129,7 @@ def _say_bits(image: Image) -> tuple[str, ...]:
     )
 
 
-def _first_image(path: Path, read: Sequence[tuple[str, int]], colour: LaserColour) -> Image:
+def _first_image(path: Path, read: Sequence[tuple[str, int]], colour: AbstractColour) -> Image:
     for name, page in read:
         try:
             return read_grey(locate(path, name), colour, page)
@@ -139,7 +141,7 @@ def _first_image(path: Path, read: Sequence[tuple[str, int]], colour: LaserColou
 
 
 def _runs(
-    path: Path, read: Sequence[tuple[str, int]], colour: LaserColour, count: int
+    path: Path, read: Sequence[tuple[str, int]], colour: AbstractColour, count: int
 ) -> Iterable[list[Image]]:
     """Read runs of pictures that follow one another, those of a run all of one size."""
     # Runs that share pictures would only seem to agree.

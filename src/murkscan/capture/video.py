@@ -14,7 +14,7 @@ from ..errors import FormatError
 from ..types.frame import Frame
 from .base import AbstractRecording, Skip, fingerprint_files, ignore_skip, spread_evenly
 from .clock import Clock
-from .colour import LaserColour
+from .colour import AbstractColour
 from .container import open_video
 from .decode import Loss, grey_from_video, picture_time
 from .fields import FieldOrder, split_fields
@@ -47,7 +47,7 @@ class Video(AbstractRecording):
     remarks: tuple[str, ...]
     clock: Clock
     """What the container's times mean."""
-    colour: LaserColour
+    colour: AbstractColour
     """How colours become grey levels."""
 
     @property
@@ -111,7 +111,7 @@ class Video(AbstractRecording):
             raise FormatError(f"No picture in {self.path} can be decoded; record it anew.")
         return frames
 
-    def in_colour(self, colour: LaserColour, *remarks: str) -> AbstractRecording:
+    def in_colour(self, colour: AbstractColour, *remarks: str) -> AbstractRecording:
         """Give the same recording with other grey levels; see the base."""
         return replace(self, colour=colour, remarks=(*self.remarks, *remarks))
 
