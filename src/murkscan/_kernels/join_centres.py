@@ -10,18 +10,30 @@ _SIZE = 5
 _TURNS = 3
 _MOST, _COLUMNS = 512, 7
 """Neighbours of a centre that are looked at, and what is known of each."""
+_BESIDE, _ALL, _OWN = 2.0, 8.0, 0.7
+"""1σ of the Gaussians by which scan lines count, where it is measured how far the surface is off:
+those around a centre, and its own [lines]."""
+_TOLD = 2.0
+"""Times that a square exceeds its own variance, to tell anything; what is more is shrunk by it."""
+
+_SUMS = 5
+_TOTAL, _SQUARES = 0, 1
+_WEIGHTS, _PAIRS, _MISSES, _TWICE, _ROOTS = 0, 1, 2, 3, 4
+"""What is summed up over the frames of each scan line: by `_weigh_errors` and `_sum_misfits`."""
 
 
 @loop()
 def join_centres(
     lines: np.ndarray, times: np.ndarray, centres: np.ndarray, sigma: np.ndarray,
-    common: np.ndarray, length: np.ndarray, rough: np.ndarray, starts: np.ndarray,
-    first: int, last: int, reach: float,
+    common: np.ndarray, rough: np.ndarray, starts: np.ndarray, first: int, last: int, reach: float,
+    length: float, alone: float, same: float, seen: float,
 ) -> np.ndarray:  # fmt: skip
     """Give centres first … last and their standard deviations, joined with those around (n 2).
 
-    `sigma` is what each centre errs by itself, or as those of `length` lines around do, `common`
-    what all neighbours err by together, with its sign.
+    `sigma` is what each centre errs by itself, or as those of `length` lines around do. Of its
+    square, a share `alone` is its frame's own, and a share `same` errs alike in all frames;
+    `seen` is the share that frames have in common, be it by error or as the surface is rough.
+    `common` is what all neighbours err by together, with its sign.
 
     All are sorted by frame, then by line; frame f has the centres starts[f] … starts[f + 1].
     Lines and times are counted in lines and frames. Neighbours lie up to `reach` lines away, in all
@@ -31,17 +43,21 @@ def join_centres(
     joined = np.empty((last - first, 2))
     noise = sigma**2 + common**2
     near = np.empty((_COLUMNS, _MOST))
+    sums = np.empty((_SUMS, 2 * int(reach) + 1))
     for i in range(first, last):
         count = _gather(i, lines, times, centres, noise, common, starts, reach, rough[i], near)
-        off, joined[i - first, 1] = _join_one(near, count, sigma[i] ** 2, noise[i], length[i])
+        off, joined[i - first, 1] = _join_one(
+            near, count, sigma[i] ** 2, noise[i], length, alone, same, seen, sums
+        )
         joined[i - first, 0] = centres[i] + off
     return joined
 
 
 @part()
 def _join_one(
-    near: np.ndarray, count: int, own: float, variance: float, length: float
-) -> tuple[float, float]:
+    near: np.ndarray, count: int, own: float, variance: float, length: float, alone: float,
+    same: float, seen: float, sums: np.ndarray,
+) -> tuple[float, float]:  # fmt: skip
     """Put a bent surface through one centre's neighbours; give by how much it is off, and 1σ.
 
     `own` is the variance that the centre has by itself, `variance` with what all err by together.
@@ -52,16 +68,26 @@ def _join_one(
     for turn in range(_TURNS):
         mean = _normal_equations(near, count, p, excess, 0.25 if turn else 0.0, matrix, right)
         if not solve(matrix, right):
-            break
+            return p[0], np.sqrt(variance)
         for k in range(_SIZE):
             p[k] = right[k]
-        variance = first_variance(matrix)
-        together, alone = _weigh_errors(matrix, near, count, p, excess)
-        # What goes on over some lines is noise or the surface, and not both.
-        variance = max(variance, min(length * alone, own)) + together**2
         if turn == 1:
             excess = max(mean, 0.0)
-    return p[0], np.sqrt(variance)
+    together = _weigh_errors(matrix, near, count, p, excess, sums)
+    known = 0.0
+    for b in range(sums.shape[1]):
+        known += alone * sums[_SQUARES, b] + same * sums[_TOTAL, b] ** 2
+    known = min(length * known, (alone + same) * own)
+    # What goes on over some lines is noise or the surface, and not both.
+    known = max(first_variance(matrix), known)
+    if not _sum_misfits(near, count, p, sums):
+        return p[0], np.sqrt(known + together**2)
+    misfit = max(
+        _measure_misfit(sums, seen, variance, _BESIDE), _measure_misfit(sums, seen, variance, _ALL)
+    )
+    off, unsure = _measure_own(sums, alone + same - seen, same)
+    share = misfit / (misfit + unsure)
+    return p[0] + share * off, np.sqrt((1.0 - share**2) * known + share * unsure + together**2)
 
 
 @part(error_model="numpy")
@@ -105,11 +131,11 @@ def _normal_equations(
 
 @part(error_model="numpy")
 def _weigh_errors(
-    root: np.ndarray, near: np.ndarray, count: int, p: np.ndarray, excess: float
-) -> tuple[float, float]:
+    root: np.ndarray, near: np.ndarray, count: int, p: np.ndarray, excess: float, sums: np.ndarray
+) -> float:  # fmt: skip
     """Give by how much the joined centre errs where all neighbours err together by `common`.
 
-    And the variance that their noise gives it where each errs by itself.
+    And sum up, by scan line, what the error of each neighbour by 1σ adds, and the squares of that.
     """
     answer = np.zeros(_SIZE)
     answer[0] = 1.0
@@ -118,7 +144,8 @@ def _weigh_errors(
     common = near[6]
     p0, p1, p2, p3, p4 = p[0], p[1], p[2], p[3], p[4]
     b0, b1, b2, b3, b4 = answer[0], answer[1], answer[2], answer[3], answer[4]
-    together, alone = 0.0, 0.0
+    together, middle = 0.0, sums.shape[1] // 2
+    sums[:] = 0.0
     for k in range(count):
         a, t = along[k], later[k]
         aa, tt = a * a, t * t
@@ -126,8 +153,71 @@ def _weigh_errors(
         share = b0 + b1 * a + b2 * t + b3 * aa + b4 * tt
         share /= noise[k] + own[k] + excess * far[k] + 0.25 * miss * miss
         together += share * common[k]
-        alone += share * share * noise[k]
-    return together, alone
+        error = share * np.sqrt(noise[k])
+        b = middle + int(np.rint(a))
+        sums[_TOTAL, b] += error
+        sums[_SQUARES, b] += error * error
+    return together
+
+
+@part(error_model="numpy")
+def _sum_misfits(near: np.ndarray, count: int, p: np.ndarray, sums: np.ndarray) -> bool:
+    """Sum up by scan line what the surface misses; tell whether any line has several frames."""
+    along, later, off, noise = near[0], near[1], near[2], near[3]
+    p0, p1, p2, p3, p4 = p[0], p[1], p[2], p[3], p[4]
+    middle, shows = sums.shape[1] // 2, False
+    sums[:] = 0.0
+    for k in range(count):
+        a, t = along[k], later[k]
+        weight = 1.0 / noise[k]
+        miss = weight * (off[k] - (p0 + p1 * a + p2 * t + p3 * a * a + p4 * t * t))
+        b = middle + int(np.rint(a))
+        shows |= sums[_WEIGHTS, b] > 0.0
+        sums[_WEIGHTS, b] += weight
+        sums[_PAIRS, b] += weight * weight
+        sums[_MISSES, b] += miss
+        sums[_TWICE, b] += miss * miss
+        sums[_ROOTS, b] += np.sqrt(weight)
+    return shows
+
+
+@part(error_model="numpy")
+def _measure_own(sums: np.ndarray, alone: float, same: float) -> tuple[float, float]:
+    """Give by how much the surface is off in its own scan line, and the variance of that.
+
+    A share `alone` of each centre's variance is noise of its frame, a share `same` of all frames.
+    """
+    middle = sums.shape[1] // 2
+    off, total, noise = 0.0, 0.0, 0.0
+    for b in range(sums.shape[1]):
+        near = np.exp(-0.5 * ((b - middle) / _OWN) ** 2)
+        weight = sums[_WEIGHTS, b]
+        off += near * sums[_MISSES, b]
+        total += near * weight
+        noise += near * near * (alone * weight + same * sums[_ROOTS, b] ** 2)
+    return off / total, noise / total**2
+
+
+@part(error_model="numpy")
+def _measure_misfit(sums: np.ndarray, seen: float, own: float, reach: float) -> float:
+    """Measure the variance that frames have in common beside noise that is alike in them.
+
+    It is the mean product of what the surface misses in one frame and in another, with 0 for one
+    pair as sure as the centre itself, of a variance `own`: far lines alone tell nothing.
+    """
+    middle = sums.shape[1] // 2
+    products, pairs, noise = 0.0, 2.0 / own**2, 0.0
+    for b in range(sums.shape[1]):
+        near = np.exp(-0.5 * ((b - middle) / reach) ** 2)
+        weight = sums[_WEIGHTS, b]
+        expected = seen * (sums[_ROOTS, b] ** 2 - weight)
+        products += near * (sums[_MISSES, b] ** 2 - sums[_TWICE, b] - expected)
+        several = weight**2 - sums[_PAIRS, b]
+        pairs += near * several
+        noise += 2.0 * near * near * several
+    if products <= 0.0:
+        return 0.0
+    return products / pairs * max(1.0 - _TOLD * noise / products**2, 0.0)
 
 
 @part()

@@ -12,6 +12,7 @@ from .._kernels.join_centres import join_centres
 from .._kernels.stripe_fit import fit_stripes, spread_skirts
 from ..types.arrays import Indices, Mask, Scalars
 from ..types.background import Noise, StripeShape
+from .alike import Alike
 from .matched_filter import SKIRT
 from .plateaus import measure_at
 from .pull import Slants, undo_pull
@@ -50,8 +51,6 @@ class Centres:
     posterior: Scalars
     common: Scalars
     """What all centres err by together where the blur errs by 1σ, with its sign [full-frame px]."""
-    length: Scalars
-    """Scan lines over which `sigma` is alike, so that it counts once in so many."""
     rough: Scalars
     """Roughness of the surface from scan line to scan line [full-frame px]."""
     blur_shift: Scalars
@@ -187,11 +186,11 @@ def _learnt(lines: ScanLines, count: int, shape: StripeShape | None) -> tuple[Sc
 
     Nothing errs alike yet, and nothing has been put back.
     """
-    length, rough, width = 1.0, _ROUGH, 0.0
+    rough, width = _ROUGH, 0.0
     if shape is not None:
-        length, rough = shape.length, lines.stretch * shape.rough
+        rough = lines.stretch * shape.rough
         width = lines.stretch * shape.width / math.hypot(1.0, lines.slope)
-    return tuple(np.full(count, each) for each in (0.0, length, min(rough, _ROUGH), 0.0, width))
+    return tuple(np.full(count, each) for each in (0.0, min(rough, _ROUGH), 0.0, width))
 
 
 def _fit_one_width(
@@ -247,7 +246,7 @@ def _without_blur(centres: Centres, *, width: float, blur: float) -> Centres:
     )
 
 
-def join_frames(near: Mapping[int, Centres]) -> Centres:
+def join_frames(near: Mapping[int, Centres], *, noise: Noise) -> Centres:
     """Join a frame's centres with those around them, in scan lines and in frames.
 
     A parabola over scan lines and over frames is put through the neighbours of each centre. They
@@ -255,6 +254,7 @@ def join_frames(near: Mapping[int, Centres]) -> Centres:
 
     Args:
         near: Centres of the frame, 0, and of those around it.
+        noise: Of a pixel.
     """
     own = near[0]
     if len(own) == 0:
@@ -264,23 +264,25 @@ def join_frames(near: Mapping[int, Centres]) -> Centres:
     starts = np.cumsum([0] + [len(group) for group in groups])
     first = starts[distances.index(0)]
     lines = [group.scan_line + own.lines.offset(group.lines)[1] for group in groups]
+    at = np.concatenate(lines)
+    straight = np.concatenate([group.position for group in groups]) - own.lines.even_wall(at)
+    sigma = np.concatenate([group.sigma for group in groups])
+    alike = Alike.of(at, straight, sigma, starts, noise=noise)
     joined = join_centres(
-        np.concatenate(lines),
+        at,
         np.repeat(np.array(distances, float), np.diff(starts)),
-        np.concatenate(
-            [
-                group.position - own.lines.even_wall(at)
-                for group, at in zip(groups, lines, strict=True)
-            ]
-        ),
-        np.concatenate([group.sigma for group in groups]),
+        straight,
+        sigma,
         np.concatenate([group.common for group in groups]),
-        np.concatenate([group.length for group in groups]),
         np.concatenate([group.rough for group in groups]),
         starts,
         first,
         first + len(own),
         _REACH,
+        alike.lines,
+        alike.own,
+        alike.same,
+        alike.seen,
     )
     wall = own.lines.even_wall(own.scan_line.astype(float))
     return replace(own, position=wall + joined[:, 0], sigma=joined[:, 1])

@@ -159,8 +159,9 @@ class Murk(AbstractExtractor):
         self, look: Iterable[ScanLines], background: Background, others: OtherLasers, laser: int
     ) -> Iterator[Stripe]:
         centres = self._centres(look, background, others)
+        assert background.levels is not None  # checked by `extract`
         for near in with_neighbours(centres, 2):
-            joined = doubt_wide(join_frames(near))
+            joined = doubt_wide(join_frames(near, noise=background.levels))
             yield _as_stripe(joined[joined.posterior >= self.min_posterior], laser)
 
     def _centres(
@@ -193,10 +194,8 @@ class Murk(AbstractExtractor):
         """Learn what is fixed to the picture, and the stripe's looks before it is taken away."""
         see = partial(see, fixed=add_rim(frames, noise, ()))
         shapes = self._learn_shapes([see(frame) for frame in _thin(frames)], noise, self._plain)
-        bank, markov = (
-            FilterBank.of(shapes, noise, self._plain),
-            self._markov(usual_rates(), usual_stays()),
-        )
+        bank = FilterBank.of(shapes, noise, self._plain)
+        markov = self._markov(usual_rates(), usual_stays())
         stays = learn_fixed_patterns(frames, see, bank, markov, lasers=lasers)
         return add_rim(frames, noise, stays), shapes
 

@@ -124,6 +124,8 @@ _SHARED = 1.5
 """Ratio of the noise of next pixels to that of neighbours from which neighbours share it: 2.1 where
 a mosaic's colours were filled in, 1.03 and less in grey pictures, with or without texture
 (benchmarks/murk.py, c3 and lamp rows)."""
+_ALIKE = 1.2
+"""The same, from which they share some: 1.5 in H.264 of 2.8 Mbit/s (there, too)."""
 _SMOOTHED = 2.0
 """Ratio of the noise of far pixels to that of near ones, which then is less than rounding alone
 gives, from which an encoder has smoothed it away."""
@@ -159,9 +161,10 @@ def learn_levels(images: Pictures) -> Noise:
     if near < _QUANTISATION**2:
         smoothed, far = learn(_FAR)
         if far > _SMOOTHED * near:
-            return replace(smoothed, least=_STEP)
+            return replace(smoothed, least=_STEP, shared=True, smoothed=True)
     _, beside = learn(_NEXT)
-    return learn(_APART_IN_MOSAIC)[0] if beside > _SHARED * near else law
+    law = learn(_APART_IN_MOSAIC)[0] if beside > _SHARED * near else law
+    return replace(law, shared=beside > _ALIKE * near > 0.0)
 
 
 def _learn_law(images: Pictures, white: float, lag: int, every: int) -> Noise:

@@ -1,7 +1,6 @@
 """How much centres scatter about a smooth surface: by noise, by the lens's blur, and beside."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,22 +10,17 @@ from ..types.arrays import Indices, Mask, Scalars
 from ..types.background import StripeShape
 from .pull import UNSURE, Pull
 
-_APART = (1, 2, 3)
+APART = (1, 2, 3)
 """Scan lines between centres that are compared: the nearer they are, the less do surfaces add; the
 farther, the less noise do they share."""
 _INNER = 6
 """Scan lines from where the stripe ends or jumps, beyond which nothing but noise scatters it."""
 _BREAK = 2.0
 """Pixels from one scan line to the next, beside an even wall's slope, from which it jumps."""
-_LONGEST = 5.0
-"""Scan lines over which noise is alike, at most: what goes on longer is the surface."""
-_THIRD = np.array([-1.0, 3.0, -3.0, 1.0])
+THIRD = np.array([-1.0, 3.0, -3.0, 1.0])
 """Third difference of four centres: the slope and the bend of a smooth surface are none of it."""
-_JUMP = 1.3
+JUMP = 1.3
 """The same, scaled to the scatter of one centre, from which a surface jumps [px]."""
-_SHARED = 2.0 / 3.0
-"""Correlation of neighbours, as a multiple of what the variance of third differences lacks: of 20
-terms' worth of it, neighbours alone take away 30."""
 _WALK = 1.28
 """Roughness of a surface that steps by chance, 1.21 of a step as `centres` counts it, as a multiple
 of what third differences over 3 lines show of it, √0.9 of a step."""
@@ -34,8 +28,9 @@ _TOLD = 2.0
 """Standard deviations by which a pull exceeds its own noise, to tell of the blur."""
 _TURNS = 10
 """Estimates of the blur, each with the weights that the last one gives."""
-_ONE_SIGMA = 0.6827
-"""Share of a Gaussian's values within one standard deviation."""
+MEDIAN = 0.6745
+"""Median size of a Gaussian's values, in standard deviations. Edges of a surface and of its paint
+are a tail that says nothing of the rest: `join_centres` measures what they do where they are."""
 ENOUGH = 100
 """Centres from which the shape is learnt, and from which three times as many its scatter."""
 
@@ -64,26 +59,26 @@ def third_differences(
     """
     is_inner = _are_inner(lines, straight)
     parts = [np.zeros((0, 7))]
-    for apart in _APART:
-        wanted = lines[:, None] + apart * np.arange(len(_THIRD))
+    for apart in APART:
+        wanted = lines[:, None] + apart * np.arange(len(THIRD))
         four = np.minimum(np.searchsorted(lines, wanted), len(lines) - 1)
         four = four[(lines[four] == wanted).all(axis=1)]
         columns = (
             _spread(sigma[four]),
-            centres[four] @ _THIRD,
-            pull[four, 0] @ _THIRD,
+            centres[four] @ THIRD,
+            pull[four, 0] @ THIRD,
             _spread(pull[four, 1]),
             _spread(UNSURE * pull[four, 0]),
         )
-        scaled = np.stack(columns, axis=1) / np.linalg.norm(_THIRD)
+        scaled = np.stack(columns, axis=1) / np.linalg.norm(THIRD)
         kind = np.stack([np.full(len(four), float(apart)), is_inner[four].all(axis=1)], axis=1)
-        parts.append(np.hstack([scaled, kind])[np.abs(scaled[:, 1]) < _JUMP])
+        parts.append(np.hstack([scaled, kind])[np.abs(scaled[:, 1]) < JUMP])
     return np.concatenate(parts)
 
 
 def _spread(sigma: Float[np.ndarray, "m 4"]) -> Scalars:
     """Compute the standard deviation of third differences."""
-    return np.asarray(np.sqrt(sigma**2 @ _THIRD**2))
+    return np.asarray(np.sqrt(sigma**2 @ THIRD**2))
 
 
 def _are_inner(lines: Indices, straight: Scalars) -> Mask:
@@ -104,30 +99,15 @@ def with_scatter(shape: StripeShape, bends: Bends, *, widest: float) -> StripeSh
         widest: The most that the lens may blur: the width of the stripe, at right angles to it, is
             that of the blur and of the sheet together [px of the full frame].
     """
-    blur = min(_learn_blur(bends[bends[:, 5] == _APART[-1]]), widest**2)
+    blur = min(_learn_blur(bends[bends[:, 5] == APART[-1]]), widest**2)
     inner = bends[bends[:, 6] > 0]
-    if np.sum(inner[:, 5] == _APART[-1]) > 3 * ENOUGH:
+    if np.sum(inner[:, 5] == APART[-1]) > 3 * ENOUGH:
         bends = inner
-    apart = [bends[:, 5] == each for each in _APART]
+    apart = [bends[:, 5] == each for each in APART]
     known, unknown = bends[:, 0], blur * np.hypot(bends[:, 3], bends[:, 4])
     noise, off = np.hypot(known, unknown), np.abs(bends[:, 1] - blur * bends[:, 2])
     misfit, floor, rough = _explain(np.stack([noise, off], axis=1)[apart[-1]])
-    explained = off / np.hypot(misfit * noise, floor)
-    length = _alike([explained[each] for each in apart])
-    return replace(shape, misfit=misfit, floor=floor, blur=blur, length=length, rough=rough)
-
-
-def _alike(off: Sequence[Sizes]) -> float:
-    """Estimate over how many scan lines noise is alike, from how little near centres differ.
-
-    Args:
-        off: Sizes of third differences in standard deviations, the farthest centres' last.
-    """
-    if min(each.size for each in off) <= 3 * ENOUGH:
-        return 1.0
-    *near, far = (np.quantile(each, _ONE_SIGMA) ** 2 for each in off)
-    shared = (_SHARED * max(1.0 - each / max(far, 1e-12), 0.0) for each in near)
-    return float(min(1.0 + 2.0 * sum(shared), _LONGEST))
+    return replace(shape, misfit=misfit, floor=floor, blur=blur, rough=rough)
 
 
 def _learn_blur(bends: Bends) -> float:
@@ -148,7 +128,7 @@ def _learn_blur(bends: Bends) -> float:
 
 
 def _explain(bends: Float[np.ndarray, "m 2"]) -> tuple[float, float, float]:
-    """Give the factor and the floor with which 68 % of the differences are as expected.
+    """Give the factor and the floor with which half of the differences are as expected.
 
     The floor comes from the surest tenth, the factor from all that the floor does not rule. Last is
     the most that the floor may be, as far as noise lets it be seen.
@@ -157,7 +137,7 @@ def _explain(bends: Float[np.ndarray, "m 2"]) -> tuple[float, float, float]:
         return 1.0, 0.0, 1.0
     bends = bends[np.argsort(bends[:, 0])]
     surest = bends[: max(len(bends) // 10, ENOUGH)]
-    seen = np.quantile(np.abs(surest[:, 1]), _ONE_SIGMA) ** 2
+    seen = (np.median(np.abs(surest[:, 1])) / MEDIAN) ** 2
     noise = np.median(surest[:, 0]) ** 2
     # What is seen is itself known to 2.6 / √n of it: less than twice that says nothing.
     hidden = 2.6 / math.sqrt(len(surest)) * noise
@@ -166,7 +146,7 @@ def _explain(bends: Float[np.ndarray, "m 2"]) -> tuple[float, float, float]:
     rest = bends[bends[:, 0] ** 2 > 2.0 * floor]
     if len(rest) < 3 * ENOUGH:
         return 1.1, float(np.sqrt(floor)), most
-    factor = np.quantile(np.abs(rest[:, 1]) / np.sqrt(rest[:, 0] ** 2 + floor), _ONE_SIGMA)
+    factor = np.median(np.abs(rest[:, 1]) / np.sqrt(rest[:, 0] ** 2 + floor)) / MEDIAN
     return float(np.clip(factor, 1.0, 3.0)), float(np.sqrt(floor)), most
 
 

@@ -28,6 +28,10 @@ class Noise:
 
     rows: float = 0.0
     """Standard deviation of what all pixels of an image row have in common [grey levels]."""
+    shared: bool = False
+    """Whether neighbouring pixels share it, by a filled-in mosaic or an encoder."""
+    smoothed: bool = False
+    """Whether an encoder has smoothed it away, so that what is left are blocks that differ."""
 
     def averaged(self, pixels: int) -> "Noise":
         """Compute the noise of the mean of so many pixels.
@@ -77,8 +81,6 @@ class StripeShape:
     blur: float = 0.0
     """Variance of the blur along the stripe, by which brighter scan lines draw their neighbours'
     centres where it slants [px² of the full frame]."""
-    length: float = 1.0
-    """Scan lines over which noise is alike, as an encoder's and speckle's is."""
     rough: float = 1.0
     """What a surface's roughness scatters centres by from scan line to scan line, at most, as far
     as noise lets it be seen [px of the binned picture]."""

@@ -1,0 +1,123 @@
+"""How far errors of centres are alike: over scan lines, and in several frames."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from ..types.arrays import Scalars
+from ..types.background import Noise
+from .scatter import APART, ENOUGH, JUMP, MEDIAN, THIRD
+
+_SHARED = 2.0 / 3.0
+"""Correlation of neighbours, as a multiple of what the variance of third differences lacks: of 20
+terms' worth of it, neighbours alone take away 30."""
+_LONGEST = 5.0
+"""Scan lines over which noise is alike, at most: what goes on longer is the surface."""
+_BLOCKS = np.array([0.80, 0.53, 0.28, 0.10, 0.0, 0.0, 0.0, 0.0, 0.0])
+"""Correlation of the errors of centres one, two … scan lines apart that an encoder leaves where it
+has smoothed all noise away: its blocks have four and eight pixels. Measured in H.264 of crf 23 at
+PAL size and of crf 32 at 1920 × 1200 alike (benchmarks/murk.py, c3-lamp20-colour-h264, c3-h264-hd,
+seed 10)."""
+_BENT = [1.0 + _BLOCKS[[a - 1, 2 * a - 1, 3 * a - 1]] @ [-1.5, 0.6, -0.1] for a in APART]
+"""What that leaves of the variance of third differences."""
+_EDGE = 4.0
+"""Standard deviations from which a third difference is an edge of the surface and no noise."""
+_MOST = 0.9
+"""Correlation of frames at most: frames that are all the same tell nothing of their noise."""
+_EACH = 4
+"""Centres of a third difference: of neighbouring ones, one in so many is independent."""
+
+_Bends = Float[np.ndarray, "frames _"]
+"""Third differences in standard deviations, by frame and scan line; NaN where there are none."""
+_Starts = Int[np.ndarray, " _"]
+"""Number of the first centre of each frame, and of all."""
+
+
+@dataclass(frozen=True)
+class Alike:
+    """How far the errors of some frames' centres are alike."""
+
+    lines: float = 1.0
+    """Scan lines over which they are."""
+    own: float = 1.0
+    """Variance that each frame has by itself, as a share of what centres are told to have."""
+    same: float = 0.0
+    """Variance that frames have in common by error, as a share of the same."""
+    seen: float = 0.0
+    """Variance that they have in common from line to line, by error or as a rough surface has it,
+    which centres are told to have as well; as a share of the same."""
+
+    @classmethod
+    def of(
+        cls, lines: Scalars, straight: Scalars, sigma: Scalars, starts: _Starts, *, noise: Noise
+    ) -> "Alike":
+        """Measure it by third differences of centres that are one, two and three lines apart.
+
+        An encoder copies what has hardly changed from frame to frame, with its errors, and a colour
+        mosaic errs by where a stripe lies in it. Surfaces go on from frame to frame as well, but
+        differences of neighbouring lines are blind to them; what those farther apart have more in
+        common is the surface, and their noise is what is left.
+
+        Args:
+            lines: Scan line of each centre, frame by frame.
+            straight: Where it lies from an even wall [full-frame px].
+            sigma: Its standard deviation by itself [full-frame px].
+            starts: Number of each frame's first centre, and of all.
+            noise: Of a pixel: frames share errors where neighbouring pixels do.
+        """
+        bends = _list_bends(lines, straight, sigma, starts)
+        if min(int(np.isfinite(each).sum()) for each in bends) <= 3 * ENOUGH:
+            return cls()
+        same = [_correlate(each) for each in bends]
+        spread = [(float(np.nanmedian(np.abs(each))) / MEDIAN) ** 2 for each in bends]
+        copied = _correlate(np.where(np.abs(bends[0]) < _EDGE, bends[0], np.nan))
+        copied = min(max(copied, 0.0), _MOST)
+        if noise.smoothed:
+            blocks = max(min(np.array(same) * spread / _BENT), 0.0)
+            seen = copied + blocks
+            return cls(1.0 + 2.0 * float(_BLOCKS.sum()), 1.0 - copied, seen, seen)
+        *near, far = (
+            one * (1.0 - max(both - same[0], 0.0)) for one, both in zip(spread, same, strict=True)
+        )
+        shared = sum(_SHARED * max(1.0 - each / max(far, 1e-12), 0.0) for each in near)
+        erring = copied if noise.shared else 0.0
+        return cls(min(1.0 + 2.0 * shared, _LONGEST), 1.0 - erring, erring, copied)
+
+
+def _list_bends(lines: Scalars, straight: Scalars, sigma: Scalars, starts: _Starts) -> list[_Bends]:
+    """List the third differences of centres, by how many scan lines they are apart."""
+    # Fields' lines may lie half a line apart.
+    step = 1 if np.all(lines == np.rint(lines)) else 2
+    place = np.rint(step * (lines - lines.min())).astype(int)
+    table = np.full((2, len(starts) - 1, int(place.max()) + 1), np.nan)
+    frame = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
+    table[:, frame, place] = straight, sigma**2
+    width = table.shape[2]
+    bends = []
+    for apart in (step * each for each in APART):
+        four = [table[:, :, k * apart : max(width - (3 - k) * apart, 0)] for k in range(4)]
+        total = sum(weight * one[0] for weight, one in zip(THIRD, four, strict=True))
+        spread = sum(weight**2 * one[1] for weight, one in zip(THIRD, four, strict=True))
+        whole = np.abs(total) < JUMP * np.linalg.norm(THIRD)
+        bends.append(np.where(whole, total / np.sqrt(spread), np.nan))
+    return bends
+
+
+def _correlate(bends: _Bends) -> float:
+    """Estimate the correlation of frames by how often signs agree; 0 where it may be chance.
+
+    References:
+        Blomqvist, On a measure of dependence between two random variables, Annals of Mathematical
+        Statistics 21(4), 1950 (the quadrant correlation).
+    """
+    signs = np.nan_to_num(np.sign(bends))
+    shown = np.abs(signs).sum(axis=0)
+    pairs = float(np.sum(shown * (shown - 1)))
+    if pairs == 0.0:
+        return 0.0
+    agree = float(np.sum(signs.sum(axis=0) ** 2 - shown)) / pairs
+    correlation = math.sin(0.5 * math.pi * agree)
+    chance = 0.5 * math.pi * math.sqrt(2 * _EACH / pairs)
+    return correlation * max(1.0 - (chance / max(abs(correlation), chance)) ** 2, 0.0)
