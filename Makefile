@@ -15,8 +15,9 @@ hello:
 	  "two to four minutes. Then the demo: one to two minutes."
 
 # Two runs of tests fill the cores; threads of small matrix products would only wait for one another.
+# What the tests start compiles Python anew each time unless Python may keep what it has compiled.
 test: check
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist loadfile
+	env -u PYTHONDONTWRITEBYTECODE OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist loadfile
 
 check: $(VENV)/dev
 	$(BIN)/ruff format --check .

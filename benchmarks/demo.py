@@ -25,7 +25,7 @@ def main() -> None:
             Figure("the paper's threshold and skeleton: RMS", paper.errors.rms * 1e3, "mm"),
             Figure("the paper's threshold and skeleton: false points", false(paper), "%"),
             Figure("points compared", errors.count),
-            Figure("time, with the simulation and both scans", spent, "s", at_most=180),
+            Figure("time, with the simulation and both scans", spent, "s", at_most=45),
         ],
         note="A simulated ship model's hull in water of c = 3 /m, 0.73 to 0.85 m before an "
         "interlaced PAL camera behind a window, 200 pictures, scanned with the default settings, "

@@ -111,6 +111,12 @@ def coarse_frame(browser, file: Path) -> float:
     return float(np.median(times)) / 1e3
 
 
+def time_views(browser, file: Path) -> tuple[tuple[float, float], tuple[float, float], float]:
+    """Time a page as surface, as points, and while it is turned."""
+    surface = time_page(browser, file, FULL)
+    return surface, time_page(browser, file, AS_POINTS), coarse_frame(browser, file)
+
+
 FULL = """(() => {
   const { stage } = murkscan;
   stage.turn(0.05, 0.02);
@@ -124,6 +130,7 @@ AS_POINTS = f"(murkscan.stage.kind = 'points', {FULL})"
 def bare_page(folder: Path) -> Path | None:
     """Build the least page that shows a million points by three.js; None where node is absent."""
     if shutil.which("npm") is None:
+        print("three.js alone is not measured: npm is absent", file=sys.stderr)
         return None
     for name in ("package.json", ".npmrc"):
         shutil.copy(VIEWER / name, folder)
@@ -132,6 +139,7 @@ def bare_page(folder: Path) -> Path | None:
     bundle = ["npx", "esbuild", "bare.js", "--bundle", "--minify", "--outfile=out.js"]
     for command in (install, bundle):
         if subprocess.run(command, cwd=folder, check=False, capture_output=True).returncode:
+            print("three.js alone is not measured: npm could not fetch it", file=sys.stderr)
             return None
     file = folder / "bare.html"
     script = (folder / "out.js").read_text("utf-8")
@@ -155,20 +163,12 @@ def main() -> None:
         page, more = Path(name) / "index.html", Path(name) / "more.html"
         made, made_more = write_page(PROFILES, page), write_page(MORE_PROFILES, more)
         browser = playwright.chromium.launch(executable_path=chromium, args=list(FLAGS))
-        surface = time_page(browser, page, FULL)
-        points = time_page(browser, page, AS_POINTS)
-        turning = coarse_frame(browser, page)
-        surface_more = time_page(browser, more, FULL)
-        points_more = time_page(browser, more, AS_POINTS)
-        turning_more = coarse_frame(browser, more)
+        surface, points, turning = time_views(browser, page)
+        surface_more, points_more, turning_more = time_views(browser, more)
         bare = bare_page(Path(name))
         peer = (np.nan, np.nan) if bare is None else time_page(browser, bare, "bare()")
         browser.close()
         size, size_more = (file.stat().st_size / 1e6 for file in (page, more))
-    if bare is None:
-        print(
-            "three.js alone is not measured: npm is absent or could not fetch it", file=sys.stderr
-        )
     tell(
         "page",
         "The page with a million points, drawn by the processor",

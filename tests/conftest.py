@@ -1,5 +1,6 @@
 """What all tests share."""
 
+import signal
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -9,6 +10,8 @@ from jaxtyping import config
 
 settings.register_profile("murkscan", deadline=None)  # a slow machine is no fault of the code
 settings.load_profile("murkscan")
+# What a shell runs in the background ignores Ctrl-C, and so would the programs that tests start.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 SHARED = Path(__file__).resolve().parents[2] / "shared"
 DATA, FAULTS = SHARED / "data", SHARED / "faults"
 RUNS = ("cli", "report", "studio", "survey")

@@ -1,13 +1,17 @@
 """Jobs that are killed at a chosen moment and begun again, in processes of their own.
 
-Run as `python -m tests.kills FOLDER JOB MOMENT …`: makes what the job needs in FOLDER, and for each
-moment prints a line of JSON: what differs after the kill and a second run from a run that nothing
-disturbed, but for stated times. A moment is a number of a file operation, before which the process
-kills itself, or with a dot a number of seconds; `count` tells how many operations there are.
+Run as `python -m tests.kills FOLDER JOB MOMENT … JOB MOMENT …`: makes what the jobs need in FOLDER,
+and for each moment prints a line of JSON: what differs after the kill and a second run from a run
+that nothing disturbed, but for stated times. A moment is a number of a file operation, before which
+the process kills itself, or with a dot a number of seconds; `any` draws an operation by the job's
+name, and `count` tells how many there are.
 """
 
+import contextlib
+import importlib
 import json
 import os
+import random
 import re
 import shutil
 import signal
@@ -221,47 +225,67 @@ def _without_times(file: Path) -> object:
     return file.read_bytes()
 
 
-def begin_in(folder: Path, out: Path) -> None:
+def begin_in(folder: Path, out: Path, job: str) -> None:
     """Make a job's folder as it is before the job: there is none, or a scan in it."""
     shutil.rmtree(out, ignore_errors=True)
-    if sys.argv[2] in ON_A_SCAN:
+    if job in ON_A_SCAN:
         shutil.copytree(folder / "a", out)
 
 
-def main() -> None:
-    folder, job, moments = Path(sys.argv[1]), JOBS[sys.argv[2]], sys.argv[3:]
-    for module in ("survey.scan", "survey.merge", "survey.export", "survey.measure"):
-        __import__(f"murkscan.{module}")
-    in_a_child(lambda: make_inputs(folder))
-    want, out = folder / f"want-{sys.argv[2]}", folder / f"out-{sys.argv[2]}"
-    begin_in(folder, want)
+def load_what_jobs_load(folder: Path) -> None:
+    """Import what the first job has imported, so that its children need not, each anew."""
+    for name in (folder / "modules").read_text().split():
+        with contextlib.suppress(ImportError):
+            importlib.import_module(name)
+
+
+def run_undisturbed(folder: Path, job: str) -> tuple[int, dict[str, object]]:
+    """Run a job to its end; give how many file operations it makes, and what it leaves."""
+    want = folder / f"want-{job}"
+    begin_in(folder, want, job)
 
     def count() -> None:
         counted = kill_before(0, want)
-        job(folder, want)
+        JOBS[job](folder, want)
         (folder / "count").write_text(str(counted[0]))
+        (folder / "modules").write_text(" ".join(sorted(sys.modules)))
 
     assert in_a_child(count) == 0
-    expected = contents(want)
-    for moment in moments:
-        if moment == "count":
-            print(json.dumps({"count": int((folder / "count").read_text())}), flush=True)
+    load_what_jobs_load(folder)
+    return int((folder / "count").read_text()), contents(want)
+
+
+def disturb(folder: Path, job: str, moment: str, expected: dict[str, object]) -> dict[str, Any]:
+    """Kill a job at a moment, run it again, and compare what it leaves."""
+    out = folder / f"out-{job}"
+    begin_in(folder, out, job)
+
+    def disturbed() -> None:
+        if "." in moment:
+            kill_after(float(moment))
+        else:
+            kill_before(int(moment), out)
+        JOBS[job](folder, out)
+
+    first = in_a_child(disturbed)
+    second = in_a_child(lambda: JOBS[job](folder, out))
+    got = contents(out)
+    names = sorted({n for n in got.keys() | expected.keys() if got.get(n) != expected.get(n)})
+    told = {"job": job, "moment": moment, "killed": first == -signal.SIGKILL}
+    return told | {"failed": second != 0, "differ": names}
+
+
+def main() -> None:
+    folder, job, draw = Path(sys.argv[1]), "", random.Random()
+    in_a_child(lambda: make_inputs(folder))
+    for word in sys.argv[2:]:
+        if word in JOBS:
+            job, draw = word, random.Random(word)
+            count, expected = run_undisturbed(folder, job)
             continue
-        begin_in(folder, out)
-
-        def disturbed(moment: str = moment) -> None:
-            if "." in moment:
-                kill_after(float(moment))
-            else:
-                kill_before(int(moment), out)
-            job(folder, out)
-
-        first = in_a_child(disturbed)
-        second = in_a_child(lambda: job(folder, out))
-        got = contents(out)
-        names = sorted({n for n in got.keys() | expected.keys() if got.get(n) != expected.get(n)})
-        told = {"moment": moment, "killed": first == -signal.SIGKILL, "failed": second != 0}
-        print(json.dumps(told | {"differ": names}), flush=True)
+        moment = str(draw.randint(1, count)) if word == "any" else word
+        told = {"count": count} if word == "count" else disturb(folder, job, moment, expected)
+        print(json.dumps(told), flush=True)
 
 
 if __name__ == "__main__":

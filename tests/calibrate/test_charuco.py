@@ -26,21 +26,26 @@ def print_out():
     return pattern.generateImage((10 * DOTS, 7 * DOTS), marginSize=0)
 
 
-def photograph(print_out, pose):
+@pytest.fixture(scope="module")
+def photograph(print_out):
     """Look up each pixel's dot, of 4 x 4 rays, and blur as a lens does."""
     width, height = CAMERA.size
     v, u = np.mgrid[: 4 * height, : 4 * width]
     pixels = (np.stack([u.ravel(), v.ravel()], axis=1) + 0.5) / 4 - 0.5
     rays = back_project(CAMERA, pixels).directions
-    normal, middle = pose.rotation[:, 2], pose.translation
-    points = pose.inverse() @ (rays * ((normal @ middle) / (rays @ normal))[:, None])
-    x, y = ((points[:, :2] / BOARD.square + 1) * DOTS).T
-    inside = (x >= 0) & (x < 10 * DOTS) & (y >= 0) & (y < 7 * DOTS)
-    column = np.clip(x.astype(int), 0, 10 * DOTS - 1)
-    row = np.clip(y.astype(int), 0, 7 * DOTS - 1)
-    level = np.where(inside, 30 + 0.7 * print_out[row, column], 120.0)
-    level = level.reshape(height, 4, width, 4).mean(axis=(1, 3))
-    return np.round(cv2.GaussianBlur(level, (0, 0), 0.8)).astype(np.uint8)
+
+    def photograph(pose):
+        normal, middle = pose.rotation[:, 2], pose.translation
+        points = pose.inverse() @ (rays * ((normal @ middle) / (rays @ normal))[:, None])
+        x, y = ((points[:, :2] / BOARD.square + 1) * DOTS).T
+        inside = (x >= 0) & (x < 10 * DOTS) & (y >= 0) & (y < 7 * DOTS)
+        column = np.clip(x.astype(int), 0, 10 * DOTS - 1)
+        row = np.clip(y.astype(int), 0, 7 * DOTS - 1)
+        level = np.where(inside, 30 + 0.7 * print_out[row, column], 120.0)
+        level = level.reshape(height, 4, width, 4).mean(axis=(1, 3))
+        return np.round(cv2.GaussianBlur(level, (0, 0), 0.8)).astype(np.uint8)
+
+    return photograph
 
 
 def hold(tilt, aside=(0.0, 0.0), depth=0.42):
@@ -49,11 +54,10 @@ def hold(tilt, aside=(0.0, 0.0), depth=0.42):
 
 
 @pytest.fixture(scope="module")
-def views(print_out):
+def views(photograph):
     poses = [hold(tilt, aside) for tilt, aside in zip(TILTS, [(0.06, 0.03), (-0.08, 0.02)] * 4)]  # noqa: B905
     return poses, [
-        find_charuco(photograph(print_out, pose), BOARD, MARKERS, name=f"{i}")
-        for i, pose in enumerate(poses)
+        find_charuco(photograph(pose), BOARD, MARKERS, name=f"{i}") for i, pose in enumerate(poses)
     ]
 
 
@@ -65,9 +69,9 @@ def test_corners_are_found_where_they_are_and_numbered_rightly(views):
         assert np.sqrt(np.mean(errors**2)) < 0.1 * np.sqrt(2)
 
 
-def test_a_board_half_out_of_the_picture_is_used_in_part(print_out):
+def test_a_board_half_out_of_the_picture_is_used_in_part(photograph):
     pose = hold((20, 10), aside=(0.17, 0.0))
-    view = find_charuco(photograph(print_out, pose), BOARD, MARKERS)
+    view = find_charuco(photograph(pose), BOARD, MARKERS)
     assert 8 <= len(view.numbers) < BOARD.num_corners
     truth = project(CAMERA, pose @ BOARD.points()[view.numbers])
     assert np.abs(view.corners - truth).max() < 0.3

@@ -42,16 +42,19 @@ def vehicle_at(time, turns):
 
 
 @functools.cache
+def dance(turns):
+    """Log every twentieth of a second of the dance, by the clock of the photos."""
+    moments = np.arange(-70.0, 170.0, 0.05)
+    poses = [vehicle_at(t, np.array(turns)) for t in moments]
+    places = np.stack([p.translation for p in poses])
+    return Trajectory(moments, places, np.concatenate([p.as_quaternion() for p in poses]))
+
+
+@functools.cache
 def record(turns=(0.5, 0.5, 0.5), *, noise=0.0, clock=0.0, rig=RIG, num=20):
     """Log a dance, and photograph the board in it; the log's clock may be late by `clock` [s]."""
     random = np.random.default_rng(4)
-    moments = np.arange(-70.0, 170.0, 0.05)
-    poses = [vehicle_at(t, np.array(turns)) for t in moments]
-    log = Trajectory(
-        moments + clock,
-        np.stack([p.translation for p in poses]),
-        np.concatenate([p.as_quaternion() for p in poses]),
-    )
+    log = replace(dance(turns), times=dance(turns).times + clock)
     times = np.linspace(0, 100, num)
     index = refractive_index(rig.water, rig.wavelength)
     views = []

@@ -15,6 +15,8 @@ from murkscan.types.laser import Laser
 from murkscan.types.rig import Rig
 from murkscan.types.water import Water
 
+pytestmark = pytest.mark.without_types
+
 SIZE = (240, 200)
 
 

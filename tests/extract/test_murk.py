@@ -13,6 +13,8 @@ from murkscan.types.frame import Frame
 from murkscan.types.laser import Laser
 from murkscan.types.rig import Rig
 
+pytestmark = pytest.mark.without_types
+
 HEIGHT, LENGTH = 160, 240
 """Pixels across the stripe and along it."""
 GAIN, READ = 0.03, 0.04

@@ -20,6 +20,8 @@ from murkscan.types.laser import Laser
 from murkscan.types.plane import Plane
 from murkscan.types.rig import Rig
 
+pytestmark = pytest.mark.without_types
+
 HEIGHT, LENGTH = 160, 240
 """Pixels across the stripe and along it."""
 RIG = Rig(

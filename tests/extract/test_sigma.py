@@ -10,6 +10,8 @@ from murkscan.types.frame import Frame
 from murkscan.types.laser import Laser
 from murkscan.types.rig import Rig
 
+pytestmark = pytest.mark.without_types
+
 HEIGHT, LENGTH, FRAMES = 140, 360, 10
 LINES, ROWS = np.arange(LENGTH), np.arange(HEIGHT)[:, None]
 RIG = Rig(

@@ -6,10 +6,13 @@ import subprocess
 import sys
 from contextlib import contextmanager
 
+import numpy as np
 import pytest
 
 pytest.importorskip("uvicorn", reason="the extra [studio] is not installed")
 
+from murkscan import load_rig
+from murkscan.live import GapMap, LiveFolder, LiveStatus
 from murkscan.survey.simulate import simulate_recording
 
 from ..scenes import hull_scene, smaller
@@ -115,6 +118,20 @@ def test_a_ball_is_picked_by_a_click_on_the_model(opened):
     assert faults == []
 
 
+def test_without_webgl_the_pictures_stand_for_the_model(opened):
+    page, _, _ = opened
+    other, faults = page.context.browser.new_page(), []
+    other.on("console", lambda said: said.type == "error" and faults.append(said.text))
+    other.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
+    other.goto(f"{page.url.split('#')[0]}#look")
+    other.get_by_text("This browser has no WebGL 2").wait_for()
+    assert other.locator(".gallery img").count() >= 7
+    other.wait_for_function("() => document.querySelector('.gallery img').naturalWidth > 0")
+    assert other.locator("iframe.viewer").count() == 0
+    other.close()
+    assert faults == []
+
+
 def test_a_report_is_headed_and_acceptance_and_control_points_are_offered(opened, folder):
     page, faults, _ = opened
     (folder / "acceptance.toml").write_text("[[ball]]\n")
@@ -131,6 +148,71 @@ def test_a_report_is_headed_and_acceptance_and_control_points_are_offered(opened
     assert faults == []
 
 
+def test_a_rig_that_is_not_built_yet_is_described_and_planned(opened, folder):
+    page, faults, _ = opened
+    page.get_by_role("link", name="Rig", exact=True).click()
+    page.locator("input[name=rig]").wait_for()
+    page.wait_for_function("() => document.querySelector('input[name=rig]').value !== 'rig.toml'")
+    said = {"rig": "boat.toml", "size-px": "720x576", "view-deg": "66", "baseline-mm": "300",
+            "angle-deg": "65", "temperature-c": "15", "salinity-psu": "35"}  # fmt: skip
+    for key, value in said.items():
+        page.locator(f"input[name={key}]").fill(value)
+    page.locator("select[name=kind]").select_option("window-mm")
+    page.locator("input[name=far]").fill("30")
+    page.locator("input[name=glass-mm]").fill("8")
+    page.get_by_text("--window-mm 30").or_(page.get_by_text("--glass-mm 8 ")).first.wait_for()
+    page.get_by_role("button", name="Write it").click()
+    page.locator("#job .line", has_text="describe").locator(".done").wait_for(timeout=PATIENCE)
+    assert load_rig(folder / "boat.toml").camera.port is not None
+    page.get_by_role("link", name="Plan", exact=True).click()
+    page.get_by_label("Rig", exact=True).select_option("boat.toml")
+    page.locator(".facts", has_text="300 mm, 65.0°").wait_for(timeout=PATIENCE)
+    assert faults == []
+
+
+def test_a_dive_without_a_map_shows_none_of_the_dive_before(opened, folder):
+    page, faults, _ = opened
+    mapped = GapMap(
+        np.zeros((4, 4), np.uint8), ("too fast",), 0.005, (0.0, 0.0), np.eye(3)[0], np.eye(3)[1],
+        1.0, 0.0,
+    )  # fmt: skip
+    for name in ("first", "second"):
+        LiveFolder(folder / name / "live").save_status(LiveStatus(state="live"))
+    LiveFolder(folder / "first" / "live").save_gaps(mapped)
+    page.get_by_role("link", name="Live", exact=True).click()
+    page.get_by_label("Dive", exact=True).select_option("first")
+    page.get_by_text("100 % covered").wait_for()
+    page.get_by_label("Dive", exact=True).select_option("second")
+    page.get_by_text("the map comes with the first metres").wait_for()
+    assert faults == []
+
+
+def test_a_dive_follows_a_vehicle_over_mavlink(opened):
+    page, faults, _ = opened
+    page.get_by_role("link", name="Live", exact=True).click()
+    page.locator("input[name=source]").fill("udp://0.0.0.0:5600")
+    page.get_by_label("How the camera moves").select_option("mavlink")
+    page.get_by_text("--mavlink 0.0.0.0:14550").wait_for()
+    page.get_by_label("Speed or step").fill("100")
+    page.get_by_text("--speed-mm-s 100").wait_for()
+    page.get_by_label("How the camera moves").select_option("speed-mm-s")
+    page.locator("code.typed", has_text="mavlink").wait_for(state="detached")
+    page.reload()
+    page.wait_for_selector("html[data-ready]")
+    assert faults == []
+
+
+def test_what_a_command_needs_is_asked_for_before_it_is_begun(opened):
+    page, faults, _ = opened
+    page.get_by_role("link", name="Live", exact=True).click()
+    before = page.locator("#job").inner_text()
+    page.get_by_role("button", name="Record and scan live").click()
+    assert page.locator("input[name=source]:invalid").count() == 1
+    page.wait_for_timeout(300)
+    assert page.locator("#job").inner_text() == before
+    assert faults == []
+
+
 def test_a_plan_follows_its_sliders(opened):
     page, faults, _ = opened
     page.get_by_role("link", name="Plan", exact=True).click()
@@ -143,6 +225,18 @@ def test_a_plan_follows_its_sliders(opened):
         timeout=PATIENCE,
     )
     page.get_by_text("--visibility-m 1").wait_for()
+    assert faults == []
+
+
+def test_a_better_place_of_the_laser_is_found_and_tried(opened):
+    page, faults, _ = opened
+    page.get_by_label("Water by").select_option("secchi-m")
+    page.get_by_text("--secchi-m 4.3").wait_for()
+    page.get_by_role("button", name="Where would the laser better sit?").click()
+    page.get_by_role("button", name="Try it").click(timeout=PATIENCE)
+    baseline = page.locator("input[name=baseline-mm][type=number]").input_value()
+    page.get_by_text(f"--baseline-mm {baseline} --angle-deg").wait_for()
+    page.locator(".facts", has_text="as if").wait_for(timeout=PATIENCE)
     assert faults == []
 
 

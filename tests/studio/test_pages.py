@@ -12,7 +12,13 @@ from murkscan.cli.progress import progress_bars
 from murkscan.io.images import write_image
 from murkscan.live import LiveFolder, LivePoints, LiveStatus
 from murkscan.optics.medium import Medium
-from murkscan.plan import Conditions, attenuation_from_visibility, forecast
+from murkscan.plan import (
+    Conditions,
+    attenuation_from_secchi,
+    attenuation_from_visibility,
+    forecast,
+    place_laser,
+)
 from murkscan.studio.commands import FORMS
 from murkscan.ui.progress_lines import ASK, read_progress
 
@@ -91,6 +97,24 @@ def test_a_plan_is_by_the_plan_s_own_formulas(folder, ask):
     assert both.sum() > 5
     # Five scan lines for fifteen.
     np.testing.assert_allclose(noise[both], known[both], rtol=0.3)
+
+
+def test_a_laser_is_planned_as_if_it_sat_elsewhere_and_where_it_would_better(folder, ask):
+    asked = {"rig": "rig.toml", "secchi-m": 4.3}
+    here = ask.get("api/plan", params=asked).json()
+    moved = ask.get("api/plan", params={**asked, "baseline-mm": 450, "angle-deg": 75}).json()
+    assert (here["baseline_mm"], here["angle_deg"]) == pytest.approx((300.0, 65.0))
+    assert (moved["baseline_mm"], moved["angle_deg"]) == pytest.approx((450.0, 75.0))
+    best = ask.get("api/plan/best", params=asked).json()
+    assert 50 <= best["baseline_mm"] <= best["longest_mm"] == pytest.approx(600.0)
+    conditions = Conditions(Medium(attenuation_from_secchi(4.3)))
+    placed = place_laser(
+        load_rig(folder / "rig.toml"), conditions, near=best["near_m"], far=best["far_m"],
+        longest=0.6,
+    )  # fmt: skip
+    assert best["baseline_mm"] == pytest.approx(1e3 * placed.baseline)
+    assert best["sigma_mm"] == pytest.approx(1e3 * placed.sigma)
+    assert ask.get("api/plan", params={**asked, "angle-deg": 190}).status_code == 400
 
 
 @pytest.mark.parametrize("water", [{}, {"visibility-m": "far"}, {"visibility-m": "-1"}])

@@ -20,7 +20,9 @@ from ..projects import finish
 PLACE, DEPTH = np.array([0.25, 0.15]), 0.005
 
 
-def test_dents_are_listed_drawn_and_shown(tmp_path):
+@pytest.fixture
+def dented(tmp_path):
+    """Give the folder of a plane of 0.45 m with a dent, and with a surface."""
     count = 91
     u, v = (grid.ravel() for grid in np.mgrid[0:count, 0:count])
     x, y = 0.005 * u, 0.005 * v
@@ -40,6 +42,11 @@ def test_dents_are_listed_drawn_and_shown(tmp_path):
         MeshResult(len(points), len(faces)),
         make=lambda: project.save_mesh(Mesh(points, faces, points=np.arange(len(points)))),
     )
+    return out
+
+
+def test_dents_are_listed_drawn_and_shown(dented, tmp_path):
+    out, project = dented, Project(dented)
     (tmp_path / "hull.csv").write_text(
         "name,from_bow_m,height_m,from_centreline_m,side,sigma_mm,x_m,y_m,z_m\n"
         "a,10,3,2,S,2,0,0,1\nb,9.6,3,2,S,2,0.4,0,1\nc,10,2.6,2,S,2,0,0.4,1\n",

@@ -1,5 +1,6 @@
 """The laser's line photographed under water, through a port."""
 
+import shutil
 import tomllib
 from dataclasses import replace
 
@@ -71,10 +72,20 @@ def save(path, sheet):
     return path
 
 
-def test_the_sheet_is_found_through_the_port(photos, sheet, tmp_path):
-    path = save(tmp_path / "rig.toml", sheet)
+def calibrate(photos, path, sheet):
     fan = FanKnowledge() if isinstance(sheet, Fan) else None
-    result = calibrate_laser_from_photos(photos, BOARD, path, fan=fan)
+    return calibrate_laser_from_photos(photos, BOARD, path, fan=fan)
+
+
+@pytest.fixture(scope="module")
+def calibrated(photos, sheet, tmp_path_factory):
+    """Give a rig file whose laser has been calibrated, and what that found."""
+    path = save(tmp_path_factory.mktemp("calibrated") / "rig.toml", sheet)
+    return path, calibrate(photos, path, sheet)
+
+
+def test_the_sheet_is_found_through_the_port(calibrated, sheet):
+    path, result = calibrated
     assert result.num_photos == len(TILTS)
     assert len(result.calibration.sightings) >= 4
     found = load_rig(path)
@@ -92,12 +103,10 @@ def test_the_sheet_is_found_through_the_port(photos, sheet, tmp_path):
     assert "Laser 0" in result.page.read_text("utf-8")
 
 
-def test_done_again_it_says_the_same(photos, sheet, tmp_path):
-    path = save(tmp_path / "rig.toml", sheet)
-    fan = FanKnowledge() if isinstance(sheet, Fan) else None
-    calibrate_laser_from_photos(photos, BOARD, path, fan=fan)
+def test_done_again_it_says_the_same(photos, calibrated, sheet, tmp_path):
+    path = shutil.copytree(calibrated[0].parent, tmp_path / "again") / "rig.toml"
     first = load_rig(path)
-    calibrate_laser_from_photos(photos, BOARD, path, fan=fan)
+    calibrate(photos, path, sheet)
     second = load_rig(path)
     assert second.covariance.names == first.covariance.names
     np.testing.assert_allclose(second.covariance.sigma, first.covariance.sigma, rtol=1e-3)
@@ -120,8 +129,7 @@ def test_a_rig_on_a_vehicle_gets_a_laser_too(photos, sheet, tmp_path, is_known):
         )
         rig = replace(rig, covariance=both)
     save_rig(path, rig)
-    fan = FanKnowledge() if isinstance(sheet, Fan) else None
-    calibrate_laser_from_photos(photos, BOARD, path, fan=fan)
+    calibrate(photos, path, sheet)
     found = load_rig(path)
     np.testing.assert_allclose(found.vehicle_from_camera.translation, [0.3, 0.0, 0.1], atol=1e-9)
     # What nothing was photographed of stays as it was known.

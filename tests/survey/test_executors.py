@@ -58,12 +58,24 @@ def serial(recorded, tmp_path_factory):
     return out
 
 
-@pytest.mark.parametrize(
-    "executor", [Threads(2), Processes(2), Dask(workers=2)], ids=lambda one: type(one).__name__
-)
+@pytest.fixture(scope="module")
+def cluster():
+    """Give the address of a cluster that begins once for all stages."""
+    distributed = pytest.importorskip("distributed", reason="the extra [cluster] is not installed")
+    settings = {"threads_per_worker": 1, "dashboard_address": None, "silence_logs": 50}
+    with distributed.LocalCluster(n_workers=2, **settings) as cluster:
+        yield cluster.scheduler_address
+
+
+@pytest.fixture(params=["threads", "processes", "dask"])
+def executor(request):
+    """Give each that is not serial; how many processes there are makes no difference to a task."""
+    if request.param == "dask":
+        return Dask(request.getfixturevalue("cluster"))
+    return Threads(2) if request.param == "threads" else Processes(1)
+
+
 def test_the_parts_are_the_same_to_the_byte(recorded, serial, tmp_path, executor):
-    if isinstance(executor, Dask):
-        pytest.importorskip("distributed", reason="the extra [cluster] is not installed")
     extract(recorded, tmp_path / "out", executor)
     made = [file.relative_to(serial) for file in sorted(serial.rglob("*")) if file.is_file()]
     made = [name for name in made if name.suffix in (".parquet", ".png") or "frames" in name.parts]
@@ -104,12 +116,7 @@ def by_one(tmp_path_factory):
     return made_by(tmp_path_factory.mktemp("one"), Serial())
 
 
-@pytest.mark.parametrize(
-    "executor", [Threads(2), Processes(1), Dask(workers=1)], ids=lambda one: type(one).__name__
-)
 def test_cloud_surface_and_export_are_the_same_to_the_byte(by_one, tmp_path, executor):
-    if isinstance(executor, Dask):
-        pytest.importorskip("distributed", reason="the extra [cluster] is not installed")
     made_by(tmp_path, executor)
     made = [file.relative_to(by_one) for file in sorted(by_one.rglob("*")) if file.is_file()]
     made = [name for name in made if name.name != "stage.json"]

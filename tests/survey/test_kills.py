@@ -2,32 +2,28 @@
 
 import json
 import os
-import random
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 
 import pytest
 
-pytestmark = pytest.mark.skipif(os.name != "posix", reason="processes are forked")
+KILLS = {"model": 3, "again": 2, "merge": 1}
+"""How often each job is killed here, at operations drawn from all."""
 
 
-@pytest.mark.parametrize(("job", "count"), [("model", 3), ("again", 2), ("merge", 1)])
-def test_a_job_that_was_killed_ends_as_if_nothing_had_been(tmp_path_factory, job, count):
-    """At operations drawn from all; `benchmarks/kills.py` tries hundreds."""
-    folder = tmp_path_factory.getbasetemp() / "kills"
-    folder.mkdir(exist_ok=True)
-    (told,) = kill(folder, job, "count")
-    moments = random.Random(job).sample(range(1, told["count"] + 1), count)
-    for one in kill(folder, job, *map(str, moments)):
+@pytest.mark.skipif(os.name != "posix", reason="processes are forked")
+def test_a_job_that_was_killed_ends_as_if_nothing_had_been(tmp_path):
+    """`benchmarks/kills.py` tries hundreds of operations, and more jobs."""
+    words = [word for job, count in KILLS.items() for word in (job, *["any"] * count)]
+    said = subprocess.run(
+        [sys.executable, "-m", "tests.kills", str(tmp_path), *words],
+        cwd=Path(__file__).parents[2], capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    told = [json.loads(line) for line in said.stdout.splitlines() if line.startswith("{")]
+    assert Counter(one["job"] for one in told) == KILLS
+    for one in told:
         assert one["killed"], one
         assert not one["failed"], one
         assert one["differ"] == [], one
-
-
-def kill(folder, job, *moments):
-    said = subprocess.run(
-        [sys.executable, "-m", "tests.kills", str(folder), job, *moments],
-        cwd=Path(__file__).parents[2], capture_output=True, text=True, check=True,
-    )  # fmt: skip
-    return [json.loads(line) for line in said.stdout.splitlines() if line.startswith("{")]

@@ -216,6 +216,14 @@ def test_a_stream_of_another_size_is_recorded_and_told(tmp_path):
     assert DiveFolder(tmp_path / "capture").chapters
 
 
+def test_a_replay_of_another_size_is_refused_before_anything_is_made(tmp_path, recording):
+    rig = stream_rig()
+    rig = replace(rig, camera=replace(rig.camera, size=(640, 480)))
+    with pytest.raises(InputError, match="320 × 240 px but the rig's camera has 640 × 480"):
+        run_live(str(recording), rig, _settings(), out=tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
 def test_a_stream_that_never_comes_leaves_one_sentence(tmp_path):
     source = f"udp://127.0.0.1:{free_port()}"
     with pytest.raises(DeviceError, match="No stream comes from"):

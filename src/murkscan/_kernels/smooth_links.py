@@ -63,9 +63,7 @@ def _fit_one(
     weight = 1.0 / (sigma[i] * sigma[i])
     s0, s1, s2, s3, s4 = weight, 0.0, 0.0, 0.0, 0.0
     t0, t1, t2, hh = 0.0, 0.0, 0.0, 0.0
-    scale = 0.0
-    count = 1
-    height = 0.0
+    scale, height, count = 0.0, 0.0, 1
     ahead, behind = i, i
     for _ in range(reach):
         ahead = forwards[ahead]

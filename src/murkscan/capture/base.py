@@ -30,6 +30,7 @@ def ignore_skip(skip: Skip) -> None:
     """Take no notice of what could not be read."""
 
 
+@dataclass(frozen=True)
 class AbstractRecording(abc.ABC):
     """Pictures in order, with times. Subclasses are final; `open_recording` picks the right one."""
 
@@ -41,10 +42,10 @@ class AbstractRecording(abc.ABC):
     """Whether a picture is one frame or two fields, and which of them came first."""
     is_timed: bool
     """Whether frames have real times; otherwise a frame's time is the number of its picture."""
-    remarks: tuple[str, ...]
-    """What was found out on opening that a user should know, in sentences."""
     num_frames: int | None
     """How many frames the recording claims, for a progress bar; None where it does not say."""
+    remarks: tuple[str, ...]
+    """What was found out on opening that a user should know, in sentences."""
 
     @property
     @abc.abstractmethod

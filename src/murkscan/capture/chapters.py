@@ -15,7 +15,6 @@ from ..types.frame import Frame
 from .base import AbstractRecording, Skip, fingerprint_files, ignore_skip, spread_evenly
 from .colour import AbstractColour
 from .container import demux_video, is_avi, open_video, picture_ticks
-from .fields import FieldOrder
 from .folder import is_picture, natural_key
 from .video import Video
 
@@ -71,12 +70,6 @@ def _chapter_key(file: Path) -> tuple[list[tuple[int, str]], str]:
 class Chapters(AbstractRecording):
     """Videos that follow one another without a pause. `open_recording` makes it."""
 
-    path: Path
-    size: tuple[int, int]
-    order: FieldOrder
-    is_timed: bool
-    num_frames: int | None
-    remarks: tuple[str, ...]
     parts: tuple[AbstractRecording, ...]
     starts: tuple[int, ...]
     """Index of the first frame of each part, and behind the last one's end."""

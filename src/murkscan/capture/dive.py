@@ -3,7 +3,6 @@
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
-from pathlib import Path
 from typing import final
 
 import numpy as np
@@ -18,7 +17,7 @@ from .base import AbstractRecording, Skip, fingerprint_files, ignore_skip, sprea
 from .colour import AbstractColour
 from .dive_pictures import decode_from_keyframe, pictures_near
 from .field_order import RUN, Fields, decide_order, say_order
-from .fields import FieldOrder, split_fields
+from .fields import split_fields
 
 _FIRST = 300
 """Messages among which a picture must be, or there is none that can be decoded: ten seconds of
@@ -30,12 +29,6 @@ video, between whose keyframes a recording may begin."""
 class DivePictures(AbstractRecording):
     """The pictures of one topic of an MCAP or a bag. `open_recording` makes it."""
 
-    path: Path
-    size: tuple[int, int]
-    order: FieldOrder
-    is_timed: bool
-    num_frames: int | None
-    remarks: tuple[str, ...]
     file: DiveFile
     index: PictureIndex
     colour: AbstractColour

@@ -14,7 +14,7 @@ from ..types.arrays import Image
 from ..types.frame import Frame
 from .base import AbstractRecording, Skip, fingerprint_files, ignore_skip, spread_evenly
 from .colour import AbstractColour
-from .fields import FieldOrder, split_fields
+from .fields import split_fields
 
 _SUFFIXES = (
     *(".bmp", ".dib", ".jp2", ".jpe", ".jpeg", ".jpg", ".pbm", ".pgm", ".png", ".pnm", ".ppm"),
@@ -69,12 +69,6 @@ def list_pictures(path: Path) -> tuple[str, ...]:
 class ImageFolder(AbstractRecording):
     """A folder of pictures in natural order. `open_recording` makes it."""
 
-    path: Path
-    size: tuple[int, int]
-    order: FieldOrder
-    is_timed: bool
-    num_frames: int | None
-    remarks: tuple[str, ...]
     files: tuple[str, ...]
     """Name of each picture's file."""
     pages: tuple[int, ...]

@@ -5,7 +5,6 @@ from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import islice
-from pathlib import Path
 from typing import final
 
 import numpy as np
@@ -17,7 +16,7 @@ from .clock import Clock
 from .colour import AbstractColour
 from .container import open_video
 from .decode import Loss, grey_from_video, picture_time
-from .fields import FieldOrder, split_fields
+from .fields import split_fields
 from .index import VideoIndex, decode_from, index_video
 from .seek import pictures_at
 from .timed import TimedPicture, time_pictures
@@ -39,12 +38,6 @@ _WHY = {
 class Video(AbstractRecording):
     """A video file. `open_recording` makes it."""
 
-    path: Path
-    size: tuple[int, int]
-    order: FieldOrder
-    is_timed: bool
-    num_frames: int | None
-    remarks: tuple[str, ...]
     clock: Clock
     """What the container's times mean."""
     colour: AbstractColour

@@ -29,6 +29,7 @@ for _place, (_name, _help) in enumerate(
         "mount": "Find where the camera sits on the vehicle, from photos of a still board.",
         "check": "Measure a known length in the scan's own water: is the rig right?",
         "photograph": "Take photos of a board from a live camera, by itself.",
+        "describe": "Write what a data sheet, a ruler and a thermometer say into a rig file.",
         "board": "Draw a chessboard of the right size to print.",
     }.items()
 ):

@@ -1,6 +1,6 @@
 """murkscan live: record a dive, show it while it goes on, and scan it when it is over."""
 
-from contextlib import nullcontext
+from contextlib import closing, nullcontext
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -87,23 +87,22 @@ def live(
         from ..survey.live_settings import LiveSettings
         from .summary import print_summary
 
-        of_dive = load_rig(rig)
+        of_dive, first = load_rig(rig), min(laser, default=0)
         link = None if mavlink is None else open_link(mavlink, motion)
         chosen = LiveSettings(
-            make_follower(motion, of_dive, min(laser, default=0), link),
-            make_mover(motion, of_dive, min(laser, default=0)),
+            make_follower(motion, of_dive, first, link),
+            make_mover(motion, of_dive, first),
             make_extractor(extractor, settings),
             make_method("ray-sheet"),
             lasers=laser,
             spacing=spacing_mm / 1e3,
-            working=find_calibrated_range(read_calibration(rig), min(laser, default=0)),
+            working=find_calibrated_range(read_calibration(rig), first),
             fields=fields,
             timeout=timeout,
             patience=patience,
             beside=nullcontext if link is None else link.listening,
         )
-    show = LiveDisplay(seconds)
-    try:
+    with closing(LiveDisplay(seconds)) as show:
         project = run_live(
             source,
             of_dive,
@@ -116,6 +115,4 @@ def live(
             progress=show.progress,
             until=show.is_over,
         )
-    finally:
-        show.close()
     print_summary(project)

@@ -1,5 +1,6 @@
 """murkscan plan: what a rig will see in a water, before it is built or lowered."""
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -18,6 +19,7 @@ _MEANING = (
 
 if TYPE_CHECKING:
     from ..survey.plan import Plan
+    from ..types.rig import Rig
 
 
 def plan(
@@ -42,6 +44,8 @@ def plan(
     interlaced: Annotated[bool, Parameter(negative=())] = False,
     daylight_w_m2: float = 0.0,
     longest_baseline_mm: PositiveFloat | None = None,
+    baseline_mm: PositiveFloat | None = None,
+    angle_deg: PositiveFloat | None = None,
     laser: int = 0,
     out: Path = Path("plan"),
 ) -> None:
@@ -94,6 +98,10 @@ def plan(
     longest_baseline_mm
         Longest baseline that the vehicle can carry [mm], for the best place of the laser; twice
         the present one unless given.
+    baseline_mm
+        As if the laser sat so far from the camera, on its side [mm]; as it is unless given.
+    angle_deg
+        As if its sheet made this angle with the baseline [degrees]; as it is unless given.
     laser
         Number of the laser, from 0.
     out
@@ -121,7 +129,7 @@ def plan(
             interlaced=interlaced,
         )
         made = make_plan(
-            load_rig(rig),
+            _as_if(load_rig(rig), baseline_mm, angle_deg, laser),
             Conditions(Medium(_attenuation(*murk), scattered), light, sensor, albedo),
             out=out,
             working_range=(from_m, to_m),
@@ -144,6 +152,18 @@ def _only_one(
             "--secchi-m; how far a diver sees is enough."
         )
     return said[0]
+
+
+def _as_if(rig: "Rig", baseline_mm: float | None, angle_deg: float | None, laser: int) -> "Rig":
+    """Put the laser where it is asked about; leave it where nothing is said."""
+    from ..plan import as_if
+
+    return as_if(
+        rig,
+        None if baseline_mm is None else baseline_mm / 1e3,
+        None if angle_deg is None else math.radians(angle_deg),
+        laser,
+    )
 
 
 def _attenuation(name: str, value: float) -> float:

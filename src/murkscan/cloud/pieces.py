@@ -1,8 +1,7 @@
 """Which points of a scan hang together."""
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
+import scipy
 
 from ..geometry.grid import ScanGrid
 from ..types.arrays import Indices
@@ -25,5 +24,6 @@ def number_pieces(grid: ScanGrid) -> Indices:
         ours.append(touching.astype(np.int32))
         theirs.append(there[touching].astype(np.int32))
     pairs = (np.concatenate(ours), np.concatenate(theirs))
-    touches = coo_array((np.ones(len(pairs[0]), bool), pairs), shape=(len(here), len(here)))
-    return connected_components(touches, directed=False)[1].astype(np.int64)
+    shape = (len(here), len(here))
+    touches = scipy.sparse.coo_array((np.ones(len(pairs[0]), bool), pairs), shape=shape)
+    return scipy.sparse.csgraph.connected_components(touches, directed=False)[1].astype(np.int64)

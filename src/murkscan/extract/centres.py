@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
+import scipy
 from jaxtyping import Float
-from scipy.special import erf
 
 from .._kernels.join_centres import join_centres
 from .._kernels.stripe_fit import fit_stripes, spread_skirts
@@ -290,5 +290,5 @@ def join_frames(near: Mapping[int, Centres], *, noise: Noise) -> Centres:
 
 def doubt_wide(centres: Centres) -> Centres:
     """Lower the posterior by the chance that the centre is not within what counts as right."""
-    right = erf(_RIGHT / np.maximum(centres.sigma, 1e-6) / math.sqrt(2))
+    right = scipy.special.erf(_RIGHT / np.maximum(centres.sigma, 1e-6) / math.sqrt(2))
     return replace(centres, posterior=centres.posterior * right)

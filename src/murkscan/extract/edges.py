@@ -3,8 +3,8 @@
 from functools import lru_cache
 
 import numpy as np
+import scipy
 from jaxtyping import Float32
-from scipy.special import erf
 
 from .._kernels.edges import answer_best
 from ..types.arrays import Indices, Scalars
@@ -63,6 +63,6 @@ def _templates(width: float, half: int) -> tuple[Float32[np.ndarray, "window _"]
 
     stripes = [np.exp(-0.5 * ((x - at) / (share * width)) ** 2) for at in tried(_OFF)
                for share in _WIDTHS]  # fmt: skip
-    edges = [erf((x - at) / (np.sqrt(2) * _SHARP * width)) for at in tried(_AWAY)]
+    edges = [scipy.special.erf((x - at) / (np.sqrt(2) * _SHARP * width)) for at in tried(_AWAY)]
     columns = [without_bend(one) for one in (*stripes, *edges)]
     return np.stack(columns, axis=1), len(stripes)

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from jaxtyping import Float, Float32
-from scipy.special import erfc
 
 from .._kernels.matched_filter import score_pixels
 from ..types.arrays import Ratios, Scalars
@@ -107,7 +107,9 @@ class FilterBank:
         widths = np.array([scale * each.width * each.binning for each in self.shapes])[:, None]
         skirts = np.array([each.skirt for each in self.shapes])[:, None]
         away = np.arange(_STEPS) + 0.5
-        core, skirt = (0.5 * erfc(away / (math.sqrt(2) * w)) for w in (widths, SKIRT * widths))
+        core, skirt = (
+            0.5 * scipy.special.erfc(away / (math.sqrt(2) * w)) for w in (widths, SKIRT * widths)
+        )
         return (core + skirts * skirt) / (1.0 + skirts)
 
     def score(self, lines: ScanLines) -> "Scored":

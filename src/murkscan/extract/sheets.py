@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from jaxtyping import Float
-from scipy.special import expit
 
 from .._kernels.ridges import pool_along
 from ..optics import back_project, equivalent_plane, intersect_rays_with_sheet, refractive_index
@@ -101,7 +101,7 @@ class OtherLasers:
         marks = ridges.exist & (ridges.heights > _CLEAR)
         own_track = ridges.positions, ridges.counts, marks
         pooled = pool_along(*own_track, np.where(marks, told, 0.0), _TRACK, _STEEP, _GAP)
-        return expit(np.clip(np.where(marks, pooled, told), -_MOST, _MOST))
+        return scipy.special.expit(np.clip(np.where(marks, pooled, told), -_MOST, _MOST))
 
 
 def _depths(rig: Rig, laser: int) -> Table:

@@ -3,10 +3,8 @@
 from dataclasses import replace
 
 import numpy as np
+import scipy
 from jaxtyping import Float, Int
-from scipy import sparse
-from scipy.sparse.csgraph import breadth_first_order, connected_components, minimum_spanning_tree
-from scipy.spatial import KDTree
 
 from ..errors import NotEnoughData
 from ..types.arrays import Directions, Mask, Normals, Points, Scalars
@@ -63,7 +61,7 @@ def complete_normals(cloud: PointCloud, unnumbered: Mask) -> PointCloud:
     found, piece, reach = _estimate(cloud.points[bare])
     known = cloud[has_normal & ~bare]
     if len(known):
-        away, nearest = KDTree(known.points).query(cloud.points[bare])
+        away, nearest = scipy.spatial.KDTree(known.points).query(cloud.points[bare])
         dots = np.einsum("ij,ij->i", found, known.normals[nearest])
         # Within the disc that made the plane all count alike, farther away less and less.
         votes = np.bincount(piece, dots / (away**2 + reach**2 + 1e-300))
@@ -77,7 +75,7 @@ def _estimate(points: Points) -> tuple[Directions, Int[np.ndarray, " n"], Scalar
     """Give each point's normal, its piece, and how far its neighbours are away [m]."""
     if len(points) < 4:
         raise NotEnoughData(f"Normals need at least 4 points, got {len(points)}.")
-    away, near = KDTree(points).query(points, k=min(_NEIGHBOURS, len(points)))
+    away, near = scipy.spatial.KDTree(points).query(points, k=min(_NEIGHBOURS, len(points)))
     near = np.asarray(near)
     normals = np.concatenate(
         [_fit_planes(points[near[at : at + _BLOCK]]) for at in range(0, len(points), _BLOCK)]
@@ -101,9 +99,11 @@ def _turn_alike(
     alike = np.abs(np.einsum("ij,ij->i", normals[here], normals[there.ravel()]))
     # An edge of weight 0 would be none.
     weights = np.maximum(1.0 - alike, 0.0) + 1e-6
-    graph = sparse.csr_matrix((weights, (here, there.ravel())), shape=(len(points),) * 2)
-    tree = sparse.csr_matrix(minimum_spanning_tree(graph.maximum(graph.T)))
-    count, piece = connected_components(tree, directed=False)
+    graph = scipy.sparse.csr_matrix((weights, (here, there.ravel())), shape=(len(points),) * 2)
+    tree = scipy.sparse.csr_matrix(
+        scipy.sparse.csgraph.minimum_spanning_tree(graph.maximum(graph.T))
+    )
+    count, piece = scipy.sparse.csgraph.connected_components(tree, directed=False)
     by_depth = np.argsort(points[:, 2], kind="stable")
     _, first = np.unique(piece[by_depth], return_index=True)
     assert len(first) == count
@@ -111,15 +111,15 @@ def _turn_alike(
 
 
 def _follow(
-    tree: sparse.csr_matrix, starts: Int[np.ndarray, " pieces"], normals: Directions
+    tree: "scipy.sparse.csr_matrix", starts: Int[np.ndarray, " pieces"], normals: Directions
 ) -> Float[np.ndarray, " n"]:
     """Give the signs of all pieces, each from its point with the smallest z."""
     count, edges = len(normals), tree.tocoo()
     # One root above the starts of all pieces: a search for each would go through all points.
     row = np.concatenate([edges.row, np.full(len(starts), count)])
     column = np.concatenate([edges.col, starts])
-    joined = sparse.csr_matrix((np.ones(len(row)), (row, column)), shape=(count + 1,) * 2)
-    order, before = breadth_first_order(joined, count, directed=False)
+    joined = scipy.sparse.csr_matrix((np.ones(len(row)), (row, column)), shape=(count + 1,) * 2)
+    order, before = scipy.sparse.csgraph.breadth_first_order(joined, count, directed=False)
     sign = np.ones(count)
     sign[starts] = np.where(normals[starts, 2] > 0, -1.0, 1.0)
     later = order[1 + len(starts) :]

@@ -4,16 +4,16 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from scipy.spatial.transform import Rotation
+import scipy
 
 from ..errors import InputError
 from ..types.arrays import Indices, Points, Vector
 
 _MOST = 2**21
 """Cubes along an axis that a number of 63 bits can count."""
-_ASKEW = Rotation.from_rotvec([0.5, -0.4, 0.3]).as_matrix()
-"""The grid lies askew: a flat wall along an axis would otherwise lie in a layer of faces for its
-whole length, and noise would sort its points into the cubes of both sides."""
+_ASKEW = (0.5, -0.4, 0.3)
+"""How the grid is turned [rad]: a flat wall along an axis would otherwise lie in a layer of faces
+for its whole length, and noise would sort its points into the cubes of both sides."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,10 +41,9 @@ class VoxelGrid:
     @property
     def keys(self) -> Indices:
         """Give the number of each point's cube: the same for equal places with an equal origin."""
-        cells = (
-            np.floor((self.points - self.origin) @ (_ASKEW / self.size)).astype(np.int64)
-            + _MOST // 2
-        )
+        askew = scipy.spatial.transform.Rotation.from_rotvec(_ASKEW).as_matrix()
+        cells = np.floor((self.points - self.origin) @ (askew / self.size)).astype(np.int64)
+        cells += _MOST // 2
         return (cells[:, 0] * _MOST + cells[:, 1]) * _MOST + cells[:, 2]
 
     @cached_property

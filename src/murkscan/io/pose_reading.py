@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
+import scipy
 from jaxtyping import Float
-from scipy.spatial.transform import Rotation
 
 from ..errors import FormatError, InputError
 from ..types.arrays import Mask, Points, Quaternions, Scalars
@@ -241,7 +241,9 @@ def _read_attitudes(
     if unit == "rad" and largest > _TURN:
         raise InputError(f"{path} has angles up to {largest:g}, which are no radians.")
     angles = np.where(np.isfinite(values).all(axis=1, keepdims=True), values, 0.0)
-    turns = Rotation.from_euler("ZYX", angles[:, ::-1], degrees=unit == "deg")
+    turns = scipy.spatial.transform.Rotation.from_euler(
+        "ZYX", angles[:, ::-1], degrees=unit == "deg"
+    )
     quaternions = turns.as_quat(scalar_first=True)
     quaternions[~np.isfinite(values).all(axis=1)] = np.nan
     body = "forward, right, down" if axes == "ned" else "forward, left, up"

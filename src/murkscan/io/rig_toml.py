@@ -101,7 +101,7 @@ def save_calibration(
     document.setdefault("wavelength_nm", round(rig.wavelength * 1e9, 3))
     _update(document.setdefault("camera", tomlkit.table()), camera_table(rig.camera))
     for number, laser in sorted((lasers or {}).items()):
-        _put_laser(document, laser, number, path)
+        _put_laser(document, laser_table(laser), number, path)
     if not keep_water and rig.water is not None:
         document["water"] = water_table(rig.water)
     if rig.vehicle_from_camera is not None and "mount.turn[0]" in rig.covariance.names:
@@ -115,6 +115,32 @@ def save_calibration(
     _write(path, document)
 
 
+def put_tables(path: Path, top: Mapping[str, Any], tables: Mapping[str, Any]) -> None:
+    """Put tables into a rig file; all else of it stays, comments too.
+
+    Args:
+        path: The rig file; made where it is missing.
+        top: Keys above all tables.
+        tables: [camera], whose port is replaced whole; the first [[laser]]; [water]; as they are
+            written.
+
+    Raises:
+        FormatError: The file is there but is no rig file, or a value cannot be.
+    """
+    document = _read(path) if path.exists() else tomlkit.parse("format = 1\n")
+    for key, value in top.items():
+        document[key] = value
+    camera = dict(tables.get("camera", {}))
+    if "port" in camera and "camera" in document:
+        document["camera"].pop("port", None)  # type: ignore[union-attr]
+    _update(document.setdefault("camera", tomlkit.table()), camera)
+    if "laser" in tables:
+        _put_laser(document, tables["laser"], 0, path)
+    if "water" in tables:
+        document["water"] = dict(tables["water"])
+    _write(path, document)
+
+
 def _update(table: Any, values: dict[str, Any]) -> None:
     """Put values into a table; tables within it are kept, with their comments."""
     for key, value in values.items():
@@ -124,7 +150,9 @@ def _update(table: Any, values: dict[str, Any]) -> None:
             table[key] = value
 
 
-def _put_laser(document: tomlkit.TOMLDocument, laser: Laser, number: int, path: Path) -> None:
+def _put_laser(
+    document: tomlkit.TOMLDocument, laser: Mapping[str, Any], number: int, path: Path
+) -> None:
     """Replace laser `number`, or add it as the next one."""
     lasers = document.get("laser")
     if not isinstance(lasers, AoT):
@@ -140,7 +168,7 @@ def _put_laser(document: tomlkit.TOMLDocument, laser: Laser, number: int, path: 
             f"not {number}."
         )
     table = tomlkit.table()
-    table.update(laser_table(laser))
+    table.update(laser)
     table.add(tomlkit.nl())
     if number == len(lasers):
         lasers.append(table)

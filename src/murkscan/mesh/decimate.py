@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 import numpy as np
+import scipy
 from jaxtyping import Int
-from scipy.spatial import KDTree
 
 from ..errors import InputError
 from ..types.arrays import FaceMask, Faces, Points
@@ -67,6 +67,6 @@ def _carry_points(
 
 def _carry_marks(before: Mesh, after: Mesh) -> FaceMask:
     assert before.filled is not None
-    tree = KDTree(before.vertices[before.faces].mean(axis=1))
+    tree = scipy.spatial.KDTree(before.vertices[before.faces].mean(axis=1))
     _, nearest = tree.query(after.vertices[after.faces].mean(axis=1))
     return before.filled[nearest]

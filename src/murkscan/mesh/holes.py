@@ -4,8 +4,8 @@ from collections import defaultdict
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 from jaxtyping import Bool, Int
-from scipy.spatial.distance import pdist
 
 from .._kernels.fill_hole import least_area
 from ..errors import InputError
@@ -147,7 +147,8 @@ def _cover(mesh: Mesh, corners: Indices, taken: "_Taken", largest: float) -> Fac
         return none
     places = mesh.vertices[corners]
     # The box is looked at first: it costs nothing, and no two corners are nearer than its side.
-    if np.ptp(places, axis=0).max() > largest or pdist(places).max() > largest:
+    apart = scipy.spatial.distance.pdist
+    if np.ptp(places, axis=0).max() > largest or apart(places).max() > largest:
         return none
     first, second = np.triu_indices(len(corners), 2)
     sides = np.stack([corners[first], corners[second]], axis=1)

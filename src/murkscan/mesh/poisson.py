@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from ..errors import Degenerate, InputError, MissingDependency
 from ..geometry.grid import ScanGrid
@@ -87,7 +87,7 @@ class Poisson(AbstractMesher):
         trimmed = _trim(_face_normals(mesh, with_normal), seen)
         if not len(trimmed.vertices):
             return empty_mesh()
-        nearest = np.asarray(cKDTree(cloud.points).query(trimmed.vertices)[1])
+        nearest = np.asarray(scipy.spatial.cKDTree(cloud.points).query(trimmed.vertices)[1])
         return replace(trimmed, points=nearest.astype(np.int64))
 
 
@@ -122,7 +122,7 @@ class _Seen:
             seen.append(cls(scanned.points, math.sqrt(own.usual_along * across), reach))
         if len(others):
             some = others[:: max(len(others) // _PROBED, 1)]
-            radii = cKDTree(others).query(some, k=[min(_NEIGHBOURS, len(others))])[0]
+            radii = scipy.spatial.cKDTree(others).query(some, k=[min(_NEIGHBOURS, len(others))])[0]
             disc = float(np.median(radii))
             seen.append(cls(others, disc * math.sqrt(math.pi / _NEIGHBOURS), disc))
         return [one for one in seen if one.spacing > 0]
@@ -160,7 +160,7 @@ def _reconstruct(open3d: Any, cloud: PointCloud, depth: int) -> Mesh:
 def _face_normals(mesh: Mesh, cloud: PointCloud) -> Mesh:
     """Turn the whole surface so that most of it agrees with the normals of the nearest points."""
     a, b, c = (mesh.vertices[corner] for corner in mesh.faces.T)
-    _, nearest = cKDTree(cloud.points).query((a + b + c) / 3)
+    _, nearest = scipy.spatial.cKDTree(cloud.points).query((a + b + c) / 3)
     agree = np.einsum("ij,ij->i", np.cross(b - a, c - a), cloud.normals[nearest])
     return mesh if agree.sum() >= 0 else Mesh(mesh.vertices, mesh.faces[:, ::-1])
 
@@ -168,5 +168,5 @@ def _face_normals(mesh: Mesh, cloud: PointCloud) -> Mesh:
 def _trim(mesh: Mesh, seen: Sequence[_Seen]) -> Mesh:
     near = np.zeros(len(mesh.vertices), bool)
     for one in seen:
-        near |= np.asarray(cKDTree(one.points).query(mesh.vertices)[0]) <= one.reach
+        near |= np.asarray(scipy.spatial.cKDTree(one.points).query(mesh.vertices)[0]) <= one.reach
     return drop_unused_vertices(Mesh(mesh.vertices, mesh.faces[near[mesh.faces].all(axis=1)]))

@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 import numpy as np
 from jaxtyping import Float
-from scipy.spatial.transform import Rotation
 
 from ..types.arrays import Scalars
 from ..types.navigation import NavigationAccuracy
@@ -57,7 +56,7 @@ def _of_position(poses: Trajectory, accuracy: NavigationAccuracy, step: float) -
             yield _waves(poses.times, step)[:, None, :] * (level * axis)[:, None]
         return
     steps = np.diff(poses.times, prepend=poses.times[0])[:, None, None]
-    yield accuracy.velocity_bias * np.cumsum(_matrices(poses) * steps, axis=0)
+    yield accuracy.velocity_bias * np.cumsum(poses.attitudes.as_matrix() * steps, axis=0)
     if accuracy.speed:
         yield accuracy.speed * (poses.positions - poses.positions[0])[:, :, None]
 
@@ -68,7 +67,7 @@ def _of_depth(poses: Trajectory, accuracy: NavigationAccuracy, step: float) -> I
 
 
 def _of_attitude(poses: Trajectory, accuracy: NavigationAccuracy, step: float) -> Iterator[Moves]:
-    axes, waves = _matrices(poses)[:, :, :2], _waves(poses.times, step)[:, None, :]
+    axes, waves = poses.attitudes.as_matrix()[:, :, :2], _waves(poses.times, step)[:, None, :]
     yield accuracy.attitude_bias * axes
     if accuracy.attitude_noise:
         for axis in (0, 1):
@@ -88,16 +87,12 @@ def _of_clock(poses: Trajectory, accuracy: NavigationAccuracy) -> Iterator[Modes
     if len(poses.times) < 2:
         return
     velocity = np.gradient(poses.positions, poses.times, axis=0)[:, :, None]
-    turns = Rotation.from_matrix(_matrices(poses))
+    turns = poses.attitudes
     rates = (turns[1:] * turns[:-1].inv()).as_rotvec() / np.diff(poses.times)[:, None]
     rate = np.concatenate([rates, rates[-1:]])[:, :, None]
     since = (poses.times - poses.times[0])[:, None, None]
     for late in (accuracy.clock_offset, accuracy.clock_drift * since):
         yield _join(late * velocity, late * rate)
-
-
-def _matrices(poses: Trajectory) -> Float[np.ndarray, "n 3 3"]:
-    return Rotation.from_quat(poses.quaternions, scalar_first=True).as_matrix()
 
 
 def _waves(times: Scalars, step: float) -> Float[np.ndarray, "n w"]:

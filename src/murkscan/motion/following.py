@@ -93,8 +93,40 @@ class SteadyFollower(AbstractFollower):
         return way.at(times)
 
 
+class AbstractLogFollower(AbstractFollower):
+    """A camera on a vehicle whose log grows; subclasses are final, and add to the log."""
+
+    def __init__(self, vehicle_from_camera: Pose, *, start_time: float, gap: float) -> None:
+        """Begin with an empty log; the arguments as of `LogFollower`."""
+        self._mount, self._start, self._gap = vehicle_from_camera, start_time, gap
+        self._log: Trajectory | None = None
+
+    @property
+    def known_until(self) -> float:
+        """See `AbstractFollower.known_until`."""
+        return -math.inf if self._log is None else float(self._log.times[-1]) - self._start
+
+    @property
+    def known_from(self) -> float:
+        """See `AbstractFollower.known_from`."""
+        return math.inf if self._log is None else float(self._log.times[0]) - self._start
+
+    def follow(self, times: Scalars, pictures: Scalars) -> Trajectory | None:
+        """See `AbstractFollower.follow`."""
+        log, moments = self._log, times + self._start
+        if log is None or len(log.times) < 2:
+            return None
+        after = np.clip(np.searchsorted(log.times, moments), 1, len(log.times) - 1)
+        covered = (moments >= log.times[0]) & (moments <= log.times[-1])
+        covered &= log.times[after] - log.times[after - 1] <= self._gap
+        if not covered.any():
+            return None
+        poses = log.at(moments[covered]).follow_mount(self._mount)
+        return Trajectory(times[covered], poses.positions, poses.quaternions)
+
+
 @final
-class LogFollower(AbstractFollower):
+class LogFollower(AbstractLogFollower):
     """A log of poses that another program writes on, line by line."""
 
     def __init__(
@@ -115,9 +147,8 @@ class LogFollower(AbstractFollower):
             start_time: Log time at which recording time is 0 [s].
             gap: Longest time between two poses that is bridged [s].
         """
-        self._table, self._convention, self._mount = table, convention, vehicle_from_camera
-        self._start, self._gap = start_time, gap
-        self._log: Trajectory | None = None
+        super().__init__(vehicle_from_camera, start_time=start_time, gap=gap)
+        self._table, self._convention = table, convention
 
     def refresh(self) -> None:
         """See `AbstractFollower.refresh`; poses that do not follow the last one are passed over."""
@@ -125,44 +156,6 @@ class LogFollower(AbstractFollower):
         if table is None or not table.rows:
             return
         self._log = go_on(self._log, read_poses(self._table.path, table, self._convention).log)
-
-    @property
-    def known_until(self) -> float:
-        """See `AbstractFollower.known_until`."""
-        return -math.inf if self._log is None else float(self._log.times[-1]) - self._start
-
-    @property
-    def known_from(self) -> float:
-        """See `AbstractFollower.known_from`."""
-        return math.inf if self._log is None else float(self._log.times[0]) - self._start
-
-    def follow(self, times: Scalars, pictures: Scalars) -> Trajectory | None:
-        """See `AbstractFollower.follow`."""
-        return sample_log(self._log, times, self._mount, start=self._start, gap=self._gap)
-
-
-def sample_log(
-    log: Trajectory | None, times: Scalars, mount: Pose, *, start: float, gap: float
-) -> Trajectory | None:
-    """Sample a log at those recording times that it covers; None where it covers none.
-
-    Args:
-        log: world_from_vehicle by its own clock; None while there is nothing of it.
-        times: Recording times [s], strictly increasing.
-        mount: vehicle_from_camera.
-        start: Log time at which recording time is 0 [s].
-        gap: Longest time between two poses that is bridged [s].
-    """
-    if log is None or len(log.times) < 2:
-        return None
-    moments = times + start
-    after = np.clip(np.searchsorted(log.times, moments), 1, len(log.times) - 1)
-    covered = (moments >= log.times[0]) & (moments <= log.times[-1])
-    covered &= log.times[after] - log.times[after - 1] <= gap
-    if not covered.any():
-        return None
-    poses = log.at(moments[covered]).follow_mount(mount)
-    return Trajectory(times[covered], poses.positions, poses.quaternions)
 
 
 def go_on(log: Trajectory | None, new: Trajectory) -> Trajectory:

@@ -1,6 +1,5 @@
 """Where a camera is whose vehicle's instruments are logged while it moves."""
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -13,13 +12,12 @@ from ..io.growing_table import GrowingTable
 from ..io.navigation_csv import read_measurements
 from ..io.navigation_log import NavigationLog, understand_series
 from ..io.text_table import TextTable
-from ..types.arrays import Scalars
 from ..types.pose import Pose
 from ..types.rig import Rig
 from ..types.trajectory import Trajectory
 from ..types.water import Water
 from .base import Direction
-from .following import AbstractFollower, go_on, sample_log
+from .following import AbstractLogFollower, go_on
 from .navigated import find_way
 
 _ROWS = 2000
@@ -65,7 +63,7 @@ class TableReadings:
 
 
 @final
-class NavigationFollower(AbstractFollower):
+class NavigationFollower(AbstractLogFollower):
     """A vehicle whose instruments are read while it moves."""
 
     def __init__(
@@ -80,10 +78,10 @@ class NavigationFollower(AbstractFollower):
         gap: float,
     ) -> None:
         """Follow readings; the other arguments as of `follow_navigation`."""
-        self._readings, self._rig, self._speed, self._along = readings, rig, speed, along
-        self._crs, self._start, self._gap = crs, start_time, gap
-        self._mount = rig.vehicle_from_camera or Pose.identity()
-        self._log: Trajectory | None = None
+        mount = rig.vehicle_from_camera or Pose.identity()
+        super().__init__(mount, start_time=start_time, gap=gap)
+        self._readings, self._rig, self._speed = readings, rig, speed
+        self._along, self._crs = along, crs
 
     def refresh(self) -> None:
         """See `AbstractFollower.refresh`.
@@ -93,20 +91,6 @@ class NavigationFollower(AbstractFollower):
         """
         for series in self._readings.read_recent():
             self._add(series)
-
-    @property
-    def known_until(self) -> float:
-        """See `AbstractFollower.known_until`."""
-        return -math.inf if self._log is None else float(self._log.times[-1]) - self._start
-
-    @property
-    def known_from(self) -> float:
-        """See `AbstractFollower.known_from`."""
-        return math.inf if self._log is None else float(self._log.times[0]) - self._start
-
-    def follow(self, times: Scalars, pictures: Scalars) -> Trajectory | None:
-        """See `AbstractFollower.follow`."""
-        return sample_log(self._log, times, self._mount, start=self._start, gap=self._gap)
 
     def _add(self, series: tuple[Series, ...]) -> None:
         path = self._readings.path

@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from ..types.arrays import Vector
 from ..types.measured import Measured
@@ -56,7 +55,7 @@ def measure_poses(log: Trajectory, accuracy: NavigationAccuracy) -> Navigation |
 
     Without noise of positions stated they count as summed up from velocities along the attitude.
     """
-    turns = Rotation.from_quat(log.quaternions, scalar_first=True)
+    turns = log.attitudes
     attitude = Readings(log.times, turns.as_euler("ZYX")[:, ::-1])
     navigation = Navigation(
         accuracy, attitude=attitude, depth=Readings(log.times, log.positions[:, 2:])
@@ -67,7 +66,7 @@ def measure_poses(log: Trajectory, accuracy: NavigationAccuracy) -> Navigation |
         return None
     steps = np.diff(log.positions, axis=0) / np.diff(log.times)[:, None]
     middles = (log.times[1:] + log.times[:-1]) / 2
-    attitudes = Rotation.from_quat(log.at(middles).quaternions, scalar_first=True)
+    attitudes = log.at(middles).attitudes
     return replace(navigation, velocity=Readings(middles, attitudes.inv().apply(steps)))
 
 

@@ -1,7 +1,7 @@
 """An object that turns before a camera that stands still: the same as a camera that goes round."""
 
 import numpy as np
-from scipy.spatial.transform import Rotation
+import scipy
 
 from ..errors import InputError
 from ..types.arrays import Vector
@@ -47,6 +47,6 @@ def turn_about_axis(
         )
     times = np.linspace(0.0, duration, count)
     object_turned = rate * times[:, None] * np.asarray(direction) / length
-    turn = Rotation.from_rotvec(-object_turned)
+    turn = scipy.spatial.transform.Rotation.from_rotvec(-object_turned)
     positions = point - turn.apply(point)
     return Trajectory(times, positions, turn.as_quat(scalar_first=True))

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.spatial.transform import Rotation
+import scipy
 
 from ..errors import InputError
 from ..types.arrays import Matrix3, Scalars, Vector
@@ -162,4 +162,4 @@ def _tilt(normal: Vector, angles: Scalars) -> Vector:
 
 
 def _rotation(turn: Vector) -> Matrix3:
-    return Rotation.from_rotvec(turn).as_matrix()
+    return scipy.spatial.transform.Rotation.from_rotvec(turn).as_matrix()

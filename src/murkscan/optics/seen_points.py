@@ -5,7 +5,6 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 from jaxtyping import Float
-from scipy.spatial.transform import Rotation
 
 from ..geometry.stripe_blur import Sight
 from ..types.arrays import Pixels, Points, Ratios, Scalars, SmallNumbers
@@ -87,8 +86,7 @@ def shift_points(
     """
     shifts = _shifts_in_rig(pixels, laser, rig)
     moments, which = np.unique(times, return_inverse=True)
-    attitudes = Rotation.from_quat(trajectory.at(moments).quaternions, scalar_first=True)
-    world_from_rig = attitudes.as_matrix()
+    world_from_rig = trajectory.at(moments).attitudes.as_matrix()
     if rig.vehicle_from_camera is not None:
         world_from_rig = world_from_rig @ rig.vehicle_from_camera.rotation.T
     return world_from_rig[which] @ shifts

@@ -17,9 +17,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from jaxtyping import Float
-from scipy.fft import fht, fhtoffset
-from scipy.special import j0
 
 from ..types.arrays import Scalars
 from .phase import FINEST, AbstractPhase, Values
@@ -86,7 +85,9 @@ class OneScattering:
         at = _PHASES / radii[:, None]
         many = np.expm1(depth * np.interp(np.log(at), np.log(frequency), spectrum))
         seen = many * np.exp(-0.5 * at**2 * blur_of(radii)[:, None])
-        return seen @ (_PHASES * j0(_PHASES) * _shares(_PHASES)) / (2 * np.pi * radii**2)
+        return (
+            seen @ (_PHASES * scipy.special.j0(_PHASES) * _shares(_PHASES)) / (2 * np.pi * radii**2)
+        )
 
     def _add_up(self, absorption: float) -> Scalars:
         """Give the density at each of `RADII` of light scattered once."""
@@ -101,9 +102,12 @@ def blur_of(radii: Scalars) -> Scalars:
 def _transform(density: Scalars) -> tuple[Scalars, Scalars]:
     """Give the frequencies and the Hankel transform of a density at `RADII`."""
     step = np.log(RADII[1] / RADII[0])
-    offset = fhtoffset(step, mu=0, bias=_BIAS)
+    fft = scipy.fft  # loaded when due
+    offset = fft.fhtoffset(step, mu=0, bias=_BIAS)
     frequency = np.exp(offset) / RADII[::-1]
-    spectrum = 2 * np.pi * fht(RADII * density, step, mu=0, offset=offset, bias=_BIAS) / frequency
+    spectrum = (
+        2 * np.pi * fft.fht(RADII * density, step, mu=0, offset=offset, bias=_BIAS) / frequency
+    )
     total = np.trapezoid(2 * np.pi * density * RADII**2, np.log(RADII))
     slope = (np.interp(_LOWEST, frequency, spectrum) - total) / _LOWEST
     return frequency, np.where(frequency < _LOWEST, total + slope * frequency, spectrum)

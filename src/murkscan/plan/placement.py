@@ -95,6 +95,30 @@ def present_place(rig: Rig, laser: int = 0) -> tuple[float, float]:
     return abs(float(plane.distance / along)), math.atan2(abs(along), abs(forward))
 
 
+def as_if(rig: Rig, baseline: float | None, angle: float | None, laser: int = 0) -> Rig:
+    """Put a laser where it is asked about, what is not said as it is; the rig itself without both.
+
+    Args:
+        rig: The rig.
+        baseline: Distance of the laser from the camera [m].
+        angle: From the baseline to its sheet [rad].
+        laser: Number of the laser.
+
+    Raises:
+        InputError: The baseline is not positive, or the sheet does not look ahead.
+    """
+    if baseline is None and angle is None:
+        return rig
+    now = present_place(rig, laser)
+    far, lean = baseline or now[0], angle or now[1]
+    if not (far > 0 and 0 < lean < math.pi):
+        raise InputError(
+            f"A laser has a baseline above 0 and an angle between 0 and 180 degrees, not "
+            f"{far * 1e3:g} mm and {math.degrees(lean):g} degrees."
+        )
+    return _move(rig, far, lean, laser)
+
+
 def _candidates(
     rig: Rig, near: float, far: float, longest: float, laser: int
 ) -> Iterator[tuple[Rig, tuple[float, float]]]:

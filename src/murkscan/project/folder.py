@@ -1,35 +1,22 @@
-"""A scan's folder: the one place that knows where each value lies."""
+"""A scan's values: the one place that knows where each lies."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
 
-from ..errors import InputError, MissingResult, NotEnoughData
+from ..errors import NotEnoughData
+from ..io import parquet
 from ..io.images import write_image
 from ..io.json_files import save_json
 from ..io.mesh_files import load_mesh, save_mesh
 from ..io.mlp import frame_name, save_project, split_frames
-from ..io.parquet import (
-    count_rows,
-    load_cloud_part,
-    load_columns,
-    load_pose_errors,
-    load_profile,
-    load_stripe,
-    save_cloud_part,
-    save_columns,
-    save_pose_errors,
-    save_profile,
-    save_stripe,
-)
 from ..io.ply import save_cloud, writing_cloud
 from ..io.poses import load_poses, save_poses
 from ..io.text import save_text
-from ..io.values import from_plain, load_value, save_value
+from ..io.values import load_value, save_value
 from ..types.arrays import ColourImage
 from ..types.background import Background
 from ..types.cloud import PointCloud
@@ -41,103 +28,18 @@ from ..types.part_note import PartNote
 from ..types.profile import Profile
 from ..types.stripe import Stripe
 from ..types.trajectory import Trajectory
-from .files import StageFiles
-from .kinds import CLOUD, EXTRACT, MESH, MOTION, REPORT, STAGES, TRIANGULATE, VIEW, Kind
-from .lock import hold
-from .scan_record import ScanRecord
-from .stage import Finished, Key, Stage, read_record, record_of
+from .kinds import CLOUD, EXTRACT, MESH, MOTION, REPORT, TRIANGULATE, VIEW, Kind
+from .scan_folder import ScanFolder
 
-R = TypeVar("R")
-_OF_A_DIVE = ("capture", "live")
-"""What `murkscan live` leaves in the folder before it scans into it."""
+V = TypeVar("V")
+_STRIPES, _NOTES = "stripes/{:06d}.parquet", "frames/{:06d}.json"
+_PROFILES, _POINTS = "profiles/{:06d}.parquet", "points/{:06d}.parquet"
+"""Where each part lies in its stage."""
 
 
 @dataclass(frozen=True)
-class Project:
+class Project(ScanFolder):
     """The folder OUT of a scan. Each value is saved and loaded here, and nowhere else."""
-
-    root: Path
-    command: Sequence[str] = ()
-    """The words that were typed after `murkscan`; each stage that is made keeps them."""
-
-    def __post_init__(self) -> None:
-        """Take a text for a path."""
-        object.__setattr__(self, "root", Path(self.root))
-
-    def hold(self) -> AbstractContextManager[None]:
-        """Keep the folder for one's own while something is made in it; see `lock.hold`."""
-        return hold(self.root, self.command)
-
-    def save_scan(self, record: ScanRecord) -> None:
-        """Write scan.json."""
-        save_value(self.root / "scan.json", record)
-
-    def load_scan(self) -> ScanRecord:
-        """Read scan.json.
-
-        Raises:
-            MissingResult: The folder holds no scan.
-            FormatError: It is damaged.
-        """
-        if not (self.root / "scan.json").exists():
-            raise MissingResult(
-                f"{self.root} holds no scan; run `murkscan scan` or `murkscan extract` into it "
-                "first."
-            )
-        return load_value(self.root / "scan.json", ScanRecord)
-
-    def check_writable(self) -> None:
-        """Refuse a folder that holds something other than a scan, so that nothing is mixed.
-
-        Raises:
-            InputError: It is a file, or a folder with other things in it.
-        """
-        if self.root.is_file():
-            raise InputError(f"{self.root} is a file; give a folder with --out.")
-        is_scan = (self.root / "scan.json").exists()
-        # A hidden file is what a run left that was killed while it wrote its first one.
-        names = [file.name for file in self.root.glob("*") if not file.name.startswith(".")]
-        others = [name for name in names if name not in _OF_A_DIVE]
-        if others and not is_scan:
-            raise InputError(f"{self.root} holds other files; give a new folder with --out.")
-
-    def stage(
-        self,
-        kind: Kind[R],
-        *,
-        settings: Mapping[str, Any],
-        inputs: Mapping[str, Any],
-        label: str = "",
-    ) -> Stage[R]:
-        """Give a stage's folder, to be made with these settings and inputs."""
-        key = Key(kind.meaning, settings, inputs)
-        return Stage(self.root / kind.word, kind, key, tuple(self.command), label)
-
-    def finished(self, kind: Kind[R], label: str = "") -> Finished[R]:
-        """Give a stage as it was finished last; of those that share a folder the one of a label.
-
-        Raises:
-            MissingResult: It has not been run, not to its end, or a stage before it has been run
-                anew since.
-            FormatError: What it said is damaged.
-        """
-        folder, word = self.root / kind.word, kind.word
-        file = record_of(folder, label)
-        record = read_record(file)
-        if record is None or record.result is None:
-            raise MissingResult(
-                f"{self.root} holds nothing that `murkscan {word}` has finished; run it, or "
-                "`murkscan scan`, first."
-            )
-        for source in STAGES:
-            digest = record.key.inputs.get(source.word)
-            if digest is not None and self.finished(source).digest != digest:
-                raise MissingResult(
-                    f"The {word} stage of {self.root} is older than its {source.word} stage; run "
-                    f"`murkscan {word}` or `murkscan scan` again."
-                )
-        result = from_plain(kind.result, record.result, name=str(file))
-        return Finished(folder, result, record)
 
     def load_stripe_parts(self) -> Iterator[tuple[int, PartNote]]:
         """Read the number and the note of each part that extract has made so far, in order."""
@@ -145,23 +47,21 @@ class Project:
         stripes = files.made("stripes/")
         for name in files.made("frames/"):
             part = _part_of(name)
-            if _stripe_name(part) in stripes:
+            if _STRIPES.format(part) in stripes:
                 yield part, load_value(files.checked(name), PartNote)
 
     def save_stripe_part(self, part: int, stripe: Stripe, note: PartNote) -> None:
         """Write one part of extract, and last a note on the frames that it covers."""
-        with self._files(EXTRACT).making(_stripe_name(part)) as path:
-            save_stripe(path, stripe)
-        with self._files(EXTRACT).making(_note_name(part)) as path:
-            save_value(path, note)
+        self._save(EXTRACT, _STRIPES.format(part), parquet.save_stripe, stripe)
+        self._save(EXTRACT, _NOTES.format(part), save_value, note)
 
     def discard_stripe_part(self, part: int) -> None:
         """Take the note of one part away, so that it counts as not made."""
-        self._files(EXTRACT).remove(_note_name(part))
+        self._files(EXTRACT).remove(_NOTES.format(part))
 
     def load_stripe_part(self, part: int) -> Stripe:
         """Read the stripes of one part."""
-        return load_stripe(self._files(EXTRACT).checked(_stripe_name(part)))
+        return parquet.load_stripe(self._files(EXTRACT).checked(_STRIPES.format(part)))
 
     def load_frame_times(self) -> FrameTimes:
         """Read which frames a finished extract has seen, with or without a stripe."""
@@ -188,12 +88,11 @@ class Project:
 
     def save_profile_part(self, part: int, profile: Profile) -> None:
         """Write one part of triangulate."""
-        with self._files(TRIANGULATE).making(_profile_name(part)) as path:
-            save_profile(path, profile)
+        self._save(TRIANGULATE, _PROFILES.format(part), parquet.save_profile, profile)
 
     def load_profile_part(self, part: int) -> Profile:
         """Read one part of triangulate."""
-        return load_profile(self._files(TRIANGULATE).checked(_profile_name(part)))
+        return parquet.load_profile(self._files(TRIANGULATE).checked(_PROFILES.format(part)))
 
     def load_profile_parts(self) -> Iterator[Profile]:
         """Read the profiles of a finished triangulate, part by part in order of frames."""
@@ -222,8 +121,7 @@ class Project:
 
     def save_background(self, background: Background, laser: int = 0) -> None:
         """Write what the extractor has learnt of a laser's stripe, and of what is beside it."""
-        with self._files(EXTRACT).making(_background_name(laser)) as path:
-            save_value(path, background)
+        self._save(EXTRACT, _background_name(laser), save_value, background)
 
     def load_background(self, laser: int = 0) -> Background | None:
         """Read what the extractor has learnt; None where that has not been kept."""
@@ -232,8 +130,7 @@ class Project:
 
     def save_overlay(self, name: str, picture: ColourImage) -> None:
         """Write one picture of what was found, extract/overlay/<name>.png."""
-        with self._files(EXTRACT).making(f"overlay/{name}.png") as path:
-            write_image(path, picture)
+        self._save(EXTRACT, f"overlay/{name}.png", write_image, picture)
 
     def remove_overlay(self, name: str) -> None:
         """Remove one of them."""
@@ -250,19 +147,15 @@ class Project:
             trajectory: The poses.
             logged: The poses as the motion alone has them; kept as logged.csv where they differ.
         """
-        with self._files(MOTION).making("trajectory.csv") as path:
-            save_poses(path, trajectory)
+        self._save(MOTION, "trajectory.csv", save_poses, trajectory)
         if logged is not None and logged is not trajectory:
-            with self._files(MOTION).making("logged.csv") as path:
-                save_poses(path, logged)
+            self._save(MOTION, "logged.csv", save_poses, logged)
         if trajectory.errors is not None:
-            with self._files(MOTION).making("errors.parquet") as path:
-                save_pose_errors(path, trajectory.errors)
+            self._save(MOTION, "errors.parquet", parquet.save_pose_errors, trajectory.errors)
 
     def save_measured(self, measured: Measured) -> None:
         """Write motion/measured.json: what the vehicle's instruments measured, and how well."""
-        with self._files(MOTION).making("measured.json") as path:
-            save_value(path, measured)
+        self._save(MOTION, "measured.json", save_value, measured)
 
     def load_measured(self) -> Measured | None:
         """Read what a finished motion was measured by; None where nothing is stated of it."""
@@ -279,12 +172,11 @@ class Project:
         trajectory = load_poses(files.checked("trajectory.csv"))
         if not files.made("errors.parquet"):
             return trajectory
-        return replace(trajectory, errors=load_pose_errors(files.checked("errors.parquet")))
+        return replace(trajectory, errors=parquet.load_pose_errors(files.checked("errors.parquet")))
 
     def save_cloud_part(self, part: int, points: CloudPart) -> None:
         """Write one part of the cloud, with what was taken out of it."""
-        with self._files(CLOUD).making(_points_name(part)) as path:
-            save_cloud_part(path, points)
+        self._save(CLOUD, _POINTS.format(part), parquet.save_cloud_part, points)
 
     def find_cloud_parts(self) -> list[int]:
         """Number the parts that cloud has made so far, in order."""
@@ -297,7 +189,7 @@ class Project:
 
     def load_cloud_part(self, part: int) -> CloudPart:
         """Read one part of the cloud, with what was taken out of it."""
-        return load_cloud_part(self._files(CLOUD).checked(_points_name(part)))
+        return parquet.load_cloud_part(self._files(CLOUD).checked(_POINTS.format(part)))
 
     def load_kept_parts(self) -> Iterator[Profile]:
         """Read the profiles of the points that a finished cloud keeps, part by part, in its order.
@@ -327,8 +219,7 @@ class Project:
                 if frames:
                     paths += self._save_frames(points)
         if frames:
-            with self._files(CLOUD).making("frames.mlp") as path:
-                save_project(path, paths)
+            self._save(CLOUD, "frames.mlp", save_project, paths)
 
     def _save_frames(self, points: PointCloud) -> Iterator[Path]:
         for frame, mine in split_frames(points):
@@ -352,11 +243,10 @@ class Project:
     def save_mesh(self, mesh: Mesh) -> None:
         """Write mesh/mesh.ply, .stl and .glb, and which points the vertices are."""
         for suffix in ("ply", "stl", "glb"):
-            with self._files(MESH).making(f"mesh.{suffix}") as path:
-                save_mesh(path, mesh)
+            self._save(MESH, f"mesh.{suffix}", save_mesh, mesh)
         if mesh.points is not None:
             with self._files(MESH).making("points.parquet") as path:
-                save_columns(path, {"point": mesh.points})
+                parquet.save_columns(path, {"point": mesh.points})
 
     def load_mesh(self) -> Mesh:
         """Read the mesh of a finished mesh stage.
@@ -374,57 +264,35 @@ class Project:
         mesh = load_mesh(files.checked("mesh.ply"))
         if not files.made("points.parquet"):
             return mesh
-        return replace(mesh, points=load_columns(files.checked("points.parquet"))["point"])
+        return replace(mesh, points=parquet.load_columns(files.checked("points.parquet"))["point"])
 
     def save_picture(self, name: str, picture: ColourImage) -> None:
         """Write one picture of the surface, view/<name>.png."""
-        with self._files(VIEW).making(f"{name}.png") as path:
-            write_image(path, picture)
+        self._save(VIEW, f"{name}.png", write_image, picture)
 
-    def save_view_page(self, page: str) -> None:
-        """Write view/index.html."""
-        self._save_page(VIEW, "index.html", page)
-
-    def save_pictures_page(self, page: str) -> None:
-        """Write view/pictures.html."""
-        self._save_page(VIEW, "pictures.html", page)
+    def save_view_page(self, name: str, page: str) -> None:
+        """Write view/<name>.html."""
+        self._save(VIEW, f"{name}.html", save_text, page)
 
     def save_report(self, content: dict[str, Any], page: str) -> None:
         """Write report/report.json and report/index.html."""
-        with self._files(REPORT).making("report.json") as path:
-            save_json(path, content)
-        self._save_page(REPORT, "index.html", page)
+        self._save(REPORT, "report.json", save_json, content)
+        self._save(REPORT, "index.html", save_text, page)
 
-    def _save_page(self, kind: Kind[Any], name: str, page: str) -> None:
+    def _save(
+        self, kind: Kind[Any], name: str, save: Callable[[Path, V], object], value: V
+    ) -> None:
         with self._files(kind).making(name) as path:
-            save_text(path, page)
+            save(path, value)
 
     def _count_rows(self, kind: Kind[Any], below: str) -> dict[int, int]:
         files = self._files(kind)
-        return {_part_of(name): count_rows(files.checked(name)) for name in files.made(below)}
-
-    def _files(self, kind: Kind[Any]) -> StageFiles:
-        return StageFiles(self.root / kind.word)
-
-
-def _stripe_name(part: int) -> str:
-    return f"stripes/{part:06d}.parquet"
-
-
-def _note_name(part: int) -> str:
-    return f"frames/{part:06d}.json"
+        count = parquet.count_rows
+        return {_part_of(name): count(files.checked(name)) for name in files.made(below)}
 
 
 def _background_name(laser: int) -> str:
     return f"background-{laser}.json" if laser else "background.json"
-
-
-def _profile_name(part: int) -> str:
-    return f"profiles/{part:06d}.parquet"
-
-
-def _points_name(part: int) -> str:
-    return f"points/{part:06d}.parquet"
 
 
 def _part_of(name: str) -> int:

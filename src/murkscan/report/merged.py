@@ -9,13 +9,13 @@ from ..types.rig import Rig
 from .calibrated import CalibrationStep
 from .heading import NO_HEADING, Heading
 from .html import gallery, size_facts, uncertainty_blocks
-from .placed import placed_as_plain, placed_sections
-from .plain import as_uncertainty
+from .placed import placed_sections
+from .plain import as_uncertainty, model_as_plain
 from .plain_numbers import round_off
 from .recorded import ModelSize, Shown
 from .sections import calibration_blocks, repeat_blocks
 from .trust import AT_95, Trust
-from .walls import wall_sections, walls_as_plain
+from .walls import wall_sections
 from .words import rig_rows, setting_rows
 
 _TO_KNOW = (
@@ -151,14 +151,7 @@ def merged_as_json(summary: MergedSummary, heading: Heading = NO_HEADING) -> dic
         "remarks": list(summary.remarks),
         "disagreement": [_as_plain_pair(one) for one in summary.pairs],
         "points": {"in_cloud": model.points},
-        "mesh": {
-            "vertices": model.vertices,
-            "faces": model.faces,
-            "origin_m": list(model.origin),
-        },
-        "georeference": placed_as_plain(model.placed),
-        "walls": walls_as_plain(model.walls),
-        "size_mm": None if model.size is None else [round_off(1e3 * edge) for edge in model.size],
+        **model_as_plain(model),
         "uncertainty_mm": None if summary.trust is None else as_uncertainty(summary.trust),
         "not_in_uncertainty": list(summary.unstated),
         "rigs": [{"file": one.file or None, **dict(rig_rows(one.rig))} for one in summary.rigs],

@@ -9,6 +9,7 @@ from .heading import NO_HEADING, Heading
 from .placed import placed_as_plain
 from .plain_numbers import as_list, as_plain, round_off
 from .plain_verdicts import as_plain_verdicts
+from .recorded import ModelSize
 from .summary import ScanSummary
 from .timeline import Timeline
 from .trust import AT_95, Trust
@@ -18,19 +19,11 @@ from .words import rig_rows
 
 def as_json(summary: ScanSummary, heading: Heading = NO_HEADING) -> dict[str, Any]:
     """Give the content of report.json: plain values, units in the keys, None for what is not."""
-    model = summary.model
     return {
         "format": 1,
         **heading.as_plain(),
         **_counts(summary),
-        "mesh": {
-            "vertices": model.vertices,
-            "faces": model.faces,
-            "origin_m": list(model.origin),
-        },
-        "georeference": placed_as_plain(model.placed),
-        "walls": walls_as_plain(model.walls),
-        "size_mm": None if model.size is None else [round_off(1e3 * edge) for edge in model.size],
+        **model_as_plain(summary.model),
         "signal_grey_levels": as_plain(summary.signal, 1.0),
         "depth_mm": as_plain(summary.depth, 1e3),
         "sigma_mm": as_plain(summary.sigma, 1e3),
@@ -49,6 +42,20 @@ def as_json(summary: ScanSummary, heading: Heading = NO_HEADING) -> dict[str, An
         "pictures": [{"path": p.path, "caption": p.caption} for p in summary.pictures],
         **as_plain_verdicts(summary),
         "timeline": _as_columns(summary.timeline, is_timed=summary.recorded.is_timed),
+    }
+
+
+def model_as_plain(model: ModelSize) -> dict[str, Any]:
+    """Give what is told of the surface, and of where and how large it is."""
+    return {
+        "mesh": {
+            "vertices": model.vertices,
+            "faces": model.faces,
+            "origin_m": list(model.origin),
+        },
+        "georeference": placed_as_plain(model.placed),
+        "walls": walls_as_plain(model.walls),
+        "size_mm": None if model.size is None else [round_off(1e3 * edge) for edge in model.size],
     }
 
 

@@ -38,10 +38,11 @@ def mask_glow(
     width, height = scene.scan_lines.camera.size
     shape = (height, width)
     lit = fall.is_lit(view.angle, view.laser_range)
-    seen, undecided = _try_blocks(scene, view, lit, shape)
-    left = np.flatnonzero(undecided.ravel())
-    seen.ravel()[left] = _is_in_sight(scene, view, left)
-    mask = (seen & lit.reshape(shape)).astype(np.float32)
+    glows, undecided = _try_blocks(scene, view, lit, shape)
+    glows &= lit.reshape(shape)
+    left = np.flatnonzero(undecided.ravel() & lit)
+    glows.ravel()[left] = _is_in_sight(scene, view, left)
+    mask = glows.astype(np.float32)
     _soften(mask.T if scene.scan_lines.laser.axis == "y" else mask, line, widths)
     return mask
 
@@ -59,7 +60,9 @@ def _try_blocks(
     """Give what the blocks' corners say of each pixel, and where they do not agree."""
     rows, columns = (np.append(np.arange(0, size - 1, _BLOCK), size - 1) for size in shape)
     nodes = (rows[:, None] * shape[1] + columns).ravel()
-    node = (_is_in_sight(scene, view, nodes) & lit[nodes]).reshape(len(rows), len(columns))
+    node = lit[nodes]
+    node[node] = _is_in_sight(scene, view, nodes[node])
+    node = node.reshape(len(rows), len(columns))
     corners = node[:-1, :-1].astype(int) + node[1:, :-1] + node[:-1, 1:] + node[1:, 1:]
     mixed = cv2.dilate(((corners > 0) & (corners < 4)).astype(np.uint8), np.ones((3, 3), np.uint8))
     of_row = np.minimum(np.arange(shape[0]) // _BLOCK, len(rows) - 2)

@@ -4,7 +4,6 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from ..errors import InputError
 from ..types.navigation import Navigation, NavigationAccuracy, Readings
@@ -51,7 +50,7 @@ def measure_way(instruments: Instruments, truth: Trajectory, *, seed: int) -> Na
     accuracy, random = instruments.accuracy, np.random.default_rng([seed, 3, 0])
     times = np.arange(truth.times[0] + _STEP, truth.times[-1] - _STEP, 1 / instruments.rate)
     poses = truth.at(times)
-    turns = Rotation.from_quat(poses.quaternions, scalar_first=True)
+    turns = poses.attitudes
     attitude = turns.as_euler("ZYX")[:, ::-1]
     attitude = attitude + (accuracy.attitude_noise or 0.0) * random.normal(size=attitude.shape)
     attitude[:, :2] += accuracy.attitude_bias * random.normal(size=2)

@@ -134,7 +134,7 @@ def log_navigation(navigation: Navigation, truth: Trajectory, *, seed: int) -> T
     random = np.random.default_rng([seed, 2, 0])
     shifts = random.normal(0.0, 1.0, (2, len(poses.times), 3))
     turns = Rotation.from_rotvec(navigation.attitude_noise * shifts[1])
-    attitudes = Rotation.from_quat(poses.quaternions, scalar_first=True) * turns
+    attitudes = poses.attitudes * turns
     return Trajectory(
         poses.times + navigation.latency,
         poses.positions + navigation.position_noise * shifts[0],

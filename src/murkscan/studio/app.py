@@ -28,7 +28,7 @@ from .dives import pack_points, tell_dive
 from .finds import look_around
 from .guard import Guard
 from .jobs import Jobs
-from .plans import tell_plan
+from .plans import tell_best, tell_plan
 from .rigs import tell_rig
 from .sandbox import Sandbox
 from .scans import tell_scan
@@ -72,6 +72,7 @@ def make_app(
         Route("/api/folder", _said(studio.folder)),
         Route("/api/rig", _said(studio.rig)),
         Route("/api/plan", _said(studio.plan)),
+        Route("/api/plan/best", _said(studio.best)),
         Route("/api/scan", _said(studio.scan)),
         Route("/api/boards", _said(studio.boards)),
         Route("/api/sight", _said(studio.sight)),
@@ -127,6 +128,11 @@ class _Studio:
     async def plan(self, request: Request) -> Any:
         """Say what a rig will see."""
         task = partial(tell_plan, self._sandbox, dict(request.query_params))
+        return await to_thread.run_sync(task, limiter=self._forecasts)
+
+    async def best(self, request: Request) -> Any:
+        """Say where the laser would better sit."""
+        task = partial(tell_best, self._sandbox, dict(request.query_params))
         return await to_thread.run_sync(task, limiter=self._forecasts)
 
     async def scan(self, request: Request) -> Any:

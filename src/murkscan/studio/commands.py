@@ -15,8 +15,8 @@ from .sandbox import Sandbox
 
 Kind = Literal["text", "switch", "in", "out", "in or text"]
 """A value as it is, a flag without one, a path that is there, one that may be made, or either."""
-_ADDRESS = re.compile(r"(udp|rtp|rtsps?|tcp|srt|https?)://\S+|udp:\d+|/dev/video\d+|\d+")
-"""A stream, a port at which a vehicle's log comes in, or a camera: all that is no file."""
+_ADDRESS = re.compile(r"(udp|rtp|rtsps?|tcp|srt|https?)://\S+|/dev/video\d+|\d+")
+"""A stream or a camera: all that is no file."""
 _LONGEST = 2000
 """Letters of a value."""
 
@@ -59,13 +59,20 @@ def _flags(words: str, kind: Kind = _TEXT) -> dict[str, Kind]:
 _MOTION = _flags(
     "speed-mm-s step-mm along speed-sigma-percent start-time time-offset-s gap-s crs log-time "
     "log-quaternion log-axes log-angles"
-) | _flags("poses", "in") | _flags("navigation", "in or text")  # fmt: skip
+) | _flags("poses navigation", "in")  # fmt: skip
 _BOARD = _flags("board square-mm") | _flags("rig", "in")
 _PART = _flags("near-m within-mm box-m name")
 _NEW_RIG = _flags("rig", "out")
 
 FORMS: dict[str, _Form] = {
     "calibrate board": _Form({"out": "out"}, _flags("board square-mm")),
+    "calibrate describe": _Form(
+        {},
+        _NEW_RIG | _flags(
+            "size-px view-deg baseline-mm angle-deg axis window-mm dome-radius-mm glass-mm "
+            "glass-index temperature-c salinity-psu wavelength-nm"
+        ),
+    ),
     "calibrate photograph": _Form(
         {"source": "in or text", "folder": "out"}, _flags("board boards wavelength-nm timeout-s")
     ),
@@ -85,7 +92,8 @@ FORMS: dict[str, _Form] = {
     "capture": _Form({"source": "in or text", "out": "out"}, _flags("seconds timeout-s")),
     "live": _Form(
         {"source": "in or text"},
-        _flags("rig", "in") | _flags("out", "out") | _flags("spacing-mm") | _MOTION,
+        _flags("rig", "in") | _flags("out", "out") | _flags("spacing-mm") | _MOTION
+        | _flags("mavlink extractor laser"),
     ),
     "scan": _Form(
         {"recording": "in"},
@@ -98,7 +106,8 @@ FORMS: dict[str, _Form] = {
         _flags("rig", "in") | _flags("out", "out") | _flags("interlaced", "switch")
         | _flags(
             "attenuation-per-m visibility-m secchi-m from-m to-m spacing-mm frame-rate-hz albedo "
-            "power-mw exposure-ms f-number daylight-w-m2 longest-baseline-mm laser"
+            "power-mw exposure-ms f-number daylight-w-m2 longest-baseline-mm laser baseline-mm "
+            "angle-deg"
         ),
     ),
     "merge": _Form(

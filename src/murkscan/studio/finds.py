@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -24,7 +25,7 @@ _MESHES = {".stl", ".obj", ".ply", ".glb"}
 
 @dataclass
 class Found:
-    """Names within the folder, each kind in order of its names."""
+    """Names within the folder: each kind by name, scans and dives the newest first."""
 
     rigs: list[str] = field(default_factory=list)
     scans: list[str] = field(default_factory=list)
@@ -58,10 +59,11 @@ def look_around(sandbox: Sandbox) -> Found:
             folders.clear()
             continue
         _sort_in(found, sandbox, folder, files)
+    root = sandbox.root
+    found.scans.sort(key=lambda name: _changed(root / name / "scan.json"), reverse=True)
+    found.dives.sort(key=lambda name: _changed(root / name / "live" / "status.json"), reverse=True)
     for names in (
         found.rigs,
-        found.scans,
-        found.dives,
         found.recordings,
         found.photos,
         found.logs,
@@ -70,6 +72,12 @@ def look_around(sandbox: Sandbox) -> Found:
     ):
         names.sort()
     return found
+
+
+def _changed(path: Path) -> int:
+    with suppress(OSError):
+        return path.stat().st_mtime_ns
+    return 0
 
 
 def _walk(root: Path) -> Iterator[tuple[Path, list[str], list[str]]]:

@@ -17,12 +17,14 @@ from ..plan import (
     VISIBLE,
     Conditions,
     Forecast,
+    as_if,
     attenuation_from_secchi,
     attenuation_from_visibility,
     forecast,
+    place_laser,
+    present_place,
     visibility_from_attenuation,
 )
-from ..plan.placement import present_place
 from ..types.rig import Rig
 from .sandbox import Sandbox
 
@@ -44,18 +46,10 @@ def tell_plan(sandbox: Sandbox, given: Mapping[str, str]) -> dict[str, Any]:
         InputError: One of them is no number, or no water is named.
         FormatError: The rig is none.
     """
-    path = sandbox.existing(given.get("rig", ""))
-    rig = _load(path, path.stat().st_mtime_ns)
-    numbers = _DEFAULTS | {k: _number(k, v) for k, v in given.items() if k not in ("rig",) and v}
-    attenuation, laser = _attenuation(numbers), int(numbers["laser"])
-    light = Light(power=numbers["power-mw"] / 1e3, ambient=numbers["daylight-w-m2"])
-    sensor = Sensor(exposure=numbers["exposure-ms"] / 1e3, f_number=numbers["f-number"])
-    conditions = Conditions(Medium(attenuation), light, sensor, numbers["albedo"])
-    far = min(_LENGTHS / max(attenuation, 1e-3), _FARTHEST)
-    seen = forecast(
-        rig, conditions, depths=np.geomspace(0.05, far, _NUM_DEPTHS), laser=laser,
-        num_lines=_NUM_LINES,
-    )  # fmt: skip
+    rig, numbers = _read(sandbox, given)
+    conditions, laser = _conditions(numbers), int(numbers["laser"])
+    attenuation, sensor = conditions.medium.attenuation, conditions.sensor
+    seen = _forecast(rig, conditions, laser)
     baseline, angle = present_place(rig, laser)
     speed = numbers["spacing-mm"] / 1e3 * numbers["frame-rate-hz"]
     return {
@@ -67,6 +61,55 @@ def tell_plan(sandbox: Sandbox, given: Mapping[str, str]) -> dict[str, Any]:
         "smear_mm": speed * sensor.exposure * 1e3,
         **_tell(seen),
     }
+
+
+def tell_best(sandbox: Sandbox, given: Mapping[str, str]) -> dict[str, Any]:
+    """Say where the laser would better sit, for the range that the rig sees; as `murkscan plan`.
+
+    Raises:
+        InputError: One of the numbers is none, or no water is named.
+        FormatError: The rig is none.
+        NotEnoughData: Nothing would be seen.
+    """
+    rig, numbers = _read(sandbox, given)
+    conditions, laser = _conditions(numbers), int(numbers["laser"])
+    near, far = _forecast(rig, conditions, laser).reach
+    longest = numbers.get("longest-baseline-mm", 2e3 * present_place(rig, laser)[0]) / 1e3
+    best = place_laser(rig, conditions, near=near, far=far, longest=longest, laser=laser)
+    return {
+        "near_m": near,
+        "far_m": far,
+        "longest_mm": longest * 1e3,
+        "baseline_mm": best.baseline * 1e3,
+        "angle_deg": math.degrees(best.angle),
+        "share_found": best.share_found,
+        "sigma_mm": best.sigma * 1e3,
+    }
+
+
+def _read(sandbox: Sandbox, given: Mapping[str, str]) -> tuple[Rig, Mapping[str, float]]:
+    path = sandbox.existing(given.get("rig", ""))
+    numbers = _DEFAULTS | {k: _number(k, v) for k, v in given.items() if k != "rig" and v}
+    baseline, angle = numbers.get("baseline-mm"), numbers.get("angle-deg")
+    rig = as_if(
+        _load(path, path.stat().st_mtime_ns),
+        None if baseline is None else baseline / 1e3,
+        None if angle is None else math.radians(angle),
+        int(numbers["laser"]),
+    )
+    return rig, numbers
+
+
+def _conditions(numbers: Mapping[str, float]) -> Conditions:
+    light = Light(power=numbers["power-mw"] / 1e3, ambient=numbers["daylight-w-m2"])
+    sensor = Sensor(exposure=numbers["exposure-ms"] / 1e3, f_number=numbers["f-number"])
+    return Conditions(Medium(_attenuation(numbers)), light, sensor, numbers["albedo"])
+
+
+def _forecast(rig: Rig, conditions: Conditions, laser: int) -> Forecast:
+    far = min(_LENGTHS / max(conditions.medium.attenuation, 1e-3), _FARTHEST)
+    depths = np.geomspace(0.05, far, _NUM_DEPTHS)
+    return forecast(rig, conditions, depths=depths, laser=laser, num_lines=_NUM_LINES)
 
 
 def _tell(seen: Forecast) -> dict[str, Any]:

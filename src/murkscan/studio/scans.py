@@ -47,7 +47,7 @@ def tell_scan(sandbox: Sandbox, name: str) -> dict[str, Any]:
         "page": _page(sandbox, root / "view" / "index.html"),
         "report": _page(sandbox, root / "report" / "index.html"),
         "accepted": _page(sandbox, root / "accept" / "index.html"),
-        "picture": _page(sandbox, root / "view" / "isometric.png"),
+        "pictures": [_page(sandbox, path) for path in _pictures(root / "view")],
         "files": _files(sandbox, root),
     }
 
@@ -61,6 +61,11 @@ def _unstated(project: Project) -> list[str]:
 def _page(sandbox: Sandbox, path: Path) -> str:
     """Give a page's name with the time of its last change, so that browsers see a new one."""
     return f"{sandbox.name(path)}?{path.stat().st_mtime_ns}" if path.exists() else ""
+
+
+def _pictures(view: Path) -> list[Path]:
+    """List the pictures from all sides; the one that is not along an axis stands first."""
+    return sorted(view.glob("*.png"), key=lambda path: (path.stem != "isometric", path.name))
 
 
 def _measures(sandbox: Sandbox, root: Path) -> list[dict[str, Any]]:

@@ -23,6 +23,7 @@ from ..errors import InputError, MissingResult, MurkscanError
 from ..live import LiveFolder, LiveStatus
 from ..project import Project
 from ..types.rig import Rig
+from .extract import check_recording
 from .live_finder import STALE, LiveFinder
 from .live_settings import LiveSettings
 from .live_source import LiveSource, RecordedSource, ReplayedSource
@@ -224,6 +225,7 @@ def _open(source: str, rig: Rig, fields: Fields) -> AbstractRecording | None:
             f"{path} has no times, so that its own speed is not known; add a times.csv, or scan it "
             "with `murkscan scan` and --fps."
         )
+    check_recording(recording, rig)
     return recording
 
 

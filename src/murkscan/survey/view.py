@@ -77,8 +77,8 @@ def draw_views(
         surface, shown = prepared
         names = [] if surface is None else _draw(project, surface, progress)
         name = title or title_of(project)
-        project.save_pictures_page(_pictures_page(name, names))
-        project.save_view_page(_page(name, shown))
+        project.save_view_page("pictures", _pictures_page(name, names))
+        project.save_view_page("index", _page(name, shown))
         points = sum(model.num_measured for model in shown.models)
         return ViewResult(tuple(names), points, shown.relation, shown.alignment)
 

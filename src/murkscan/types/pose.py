@@ -1,13 +1,15 @@
 """A rigid transform. Name it target_from_source: p_target = target_from_source @ p_source."""
 
 from dataclasses import dataclass
-from typing import overload
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from .arrays import Matrix3, Points, Quaternions, Vector
 from .short_repr import ShortRepr
+
+if TYPE_CHECKING:
+    from scipy.spatial.transform import Rotation
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -27,11 +29,20 @@ class Pose(ShortRepr):
     @classmethod
     def from_quaternion(cls, wxyz: Quaternions, translation: Vector) -> "Pose":
         """Make a pose from one quaternion (1 4, any length but zero) and a translation [m]."""
+        from scipy.spatial.transform import Rotation
+
         return cls(Rotation.from_quat(wxyz[0], scalar_first=True).as_matrix(), translation)
+
+    @property
+    def attitude(self) -> "Rotation":
+        """The rotation as a turn of source axes to target axes, to compute with."""
+        from scipy.spatial.transform import Rotation  # a sixth of what a scan's start loads
+
+        return Rotation.from_matrix(self.rotation)
 
     def as_quaternion(self) -> Quaternions:
         """Give the rotation as one unit quaternion, w x y z with w ≥ 0, shape 1 4."""
-        quaternion = Rotation.from_matrix(self.rotation).as_quat(canonical=True, scalar_first=True)
+        quaternion = self.attitude.as_quat(canonical=True, scalar_first=True)
         return quaternion[None]
 
     @overload
@@ -47,8 +58,10 @@ class Pose(ShortRepr):
 
     def turn(self, attitudes: Quaternions) -> Quaternions:
         """Give attitudes in a that are given in b: a_from_c of b_from_c, w x y z, one a row."""
-        own = Rotation.from_matrix(self.rotation)
-        return (own * Rotation.from_quat(attitudes, scalar_first=True)).as_quat(scalar_first=True)
+        from scipy.spatial.transform import Rotation
+
+        turns = Rotation.from_quat(attitudes, scalar_first=True)
+        return (self.attitude * turns).as_quat(scalar_first=True)
 
     def inverse(self) -> "Pose":
         """Swap the frames: b_from_a of a_from_b."""

@@ -2,15 +2,18 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Float
-from scipy.spatial.transform import Rotation, Slerp
 
 from ..errors import InputError
 from .arrays import Mask, Matrix3, Points, Quaternions, Scalars, Vector
 from .pose import Pose
 from .short_repr import ShortRepr
+
+if TYPE_CHECKING:
+    from scipy.spatial.transform import Rotation
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -84,8 +87,10 @@ class Trajectory(ShortRepr):
                 f"from {self.times[0]:.3f} to {self.times[-1]:.3f} s."
             )
         positions = np.stack([np.interp(times, self.times, p) for p in self.positions.T], axis=1)
-        rotations = Rotation.from_quat(self.quaternions, scalar_first=True)
+        rotations = self.attitudes
         if len(self.times) > 1:
+            from scipy.spatial.transform import Slerp
+
             rotations = Slerp(self.times, rotations)(times)
         errors = self.errors
         if errors is not None and len(self.times) > 1:
@@ -94,6 +99,13 @@ class Trajectory(ShortRepr):
             share = share[:, None, None]
             errors = (1 - share) * errors[before] + share * errors[before + 1]
         return Trajectory(times, positions, rotations.as_quat(scalar_first=True), errors)
+
+    @property
+    def attitudes(self) -> "Rotation":
+        """The quaternions as turns of camera axes to world axes, to compute with."""
+        from scipy.spatial.transform import Rotation  # a sixth of what a scan's start loads
+
+        return Rotation.from_quat(self.quaternions, scalar_first=True)
 
     def has(self, times: Scalars) -> Mask:
         """Tell which times [s] are among its own: frames whose pose is known, not interpolated."""
@@ -125,28 +137,25 @@ class Trajectory(ShortRepr):
         """Give the rotation and the position at each time; points of a profile share theirs."""
         moments, which = np.unique(times, return_inverse=True)
         poses = self.at(moments)
-        rotations = Rotation.from_quat(poses.quaternions, scalar_first=True).as_matrix()
+        rotations = poses.attitudes.as_matrix()
         return rotations[which], poses.positions[which]
 
     def line_of_sight(self) -> Vector:
         """Compute the mean direction in which the camera looked, in the world; unit length."""
-        mean = Rotation.from_quat(self.quaternions, scalar_first=True).mean()
-        return np.asarray(mean.apply(np.array([0.0, 0.0, 1.0])))
+        return np.asarray(self.attitudes.mean().apply(np.array([0.0, 0.0, 1.0])))
 
     def mean_attitude(self) -> Matrix3:
         """Compute the mean rotation from camera axes to world axes."""
-        return Rotation.from_quat(self.quaternions, scalar_first=True).mean().as_matrix()
+        return self.attitudes.mean().as_matrix()
 
     def follow_mount(self, source_from_camera: Pose) -> "Trajectory":
         """Give world_from_camera where this is world_from_source: a vehicle with a mount."""
-        rotations = Rotation.from_quat(self.quaternions, scalar_first=True)
+        rotations = self.attitudes
         arms = rotations.apply(source_from_camera.translation)
         return Trajectory(
             self.times,
             self.positions + arms,
-            (rotations * Rotation.from_matrix(source_from_camera.rotation)).as_quat(
-                scalar_first=True
-            ),
+            (rotations * source_from_camera.attitude).as_quat(scalar_first=True),
             None if self.errors is None else _at_arms(self.errors, arms),
         )
 

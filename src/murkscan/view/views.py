@@ -3,7 +3,6 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from ..types.arrays import Matrix3, Vector
 from ..types.trajectory import Trajectory
@@ -53,7 +52,7 @@ def standard_views(trajectory: Trajectory | None = None) -> tuple[View, ...]:
     world_from_front, eye = np.eye(3), np.zeros(3)
     if trajectory is not None:
         eye = trajectory.positions.mean(axis=0)
-        attitudes = Rotation.from_quat(trajectory.quaternions, scalar_first=True)
+        attitudes = trajectory.attitudes
         world_from_front = attitudes.mean().as_matrix()
     return tuple(
         View(name, _look(np.array(forward, float), np.array(up, float)) @ world_from_front.T, eye)

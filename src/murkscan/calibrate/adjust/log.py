@@ -31,7 +31,7 @@ class LogSampler:
 
     def __init__(self, log: Trajectory) -> None:
         self.log = log
-        self._rotations = Rotation.from_quat(log.quaternions, scalar_first=True)
+        self._rotations = log.attitudes
         self._slerp = Slerp(log.times, self._rotations) if len(log.times) > 1 else None
 
     @property

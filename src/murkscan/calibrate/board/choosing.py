@@ -33,11 +33,6 @@ class PhotoChooser:
         self._taken: list[Pixels] = []
         self._last: tuple[Pixels, float] | None = None
 
-    @property
-    def num_taken(self) -> int:
-        """Photos taken."""
-        return len(self._taken)
-
     def judge(self, view: BoardView, image: Image, time: float) -> Judgement:
         """Judge a picture.
 

@@ -45,7 +45,7 @@ def first_path(
     knots = Knots.over(first, last, step, margin)
     nothing = np.zeros((knots.num_controls, 3))
     if start is not None:
-        turns = Rotation.from_quat(start.quaternions, scalar_first=True)
+        turns = start.attitudes
         return Path(knots, nothing, nothing, _smooth(start.times, turns, knots, step))
     attitude = navigation.attitude
     if attitude is None:
@@ -62,7 +62,7 @@ def fit_path(path: Path, way: Trajectory) -> Path:
         way: world_from_vehicle, at times within the knots.
     """
     reference = evaluate_rotation(path.knots, path.reference, way.times)
-    turns = Rotation.from_quat(way.quaternions, scalar_first=True) * reference.inv()
+    turns = way.attitudes * reference.inv()
     both = _fit(path.knots, way.times, np.hstack([way.positions, turns.as_rotvec()]))
     return replace(path, positions=both[:, :3], turns=both[:, 3:])
 

@@ -18,7 +18,7 @@ const STEPS = {
   camera: ["Camera", "A board in air, 15 times or more, tilted to every side and out to the corners of the picture.", [
     { key: "wavelength-nm", label: "Colour of the laser", unit: "nm", kind: "number", hint: "for a new rig file", more: true },
     { key: "charuco-marker-mm", label: "Side of a ChArUco marker", unit: "mm", kind: "number", more: true }]],
-  port: ["Port", "The board under water, through the window: near and far, tilted to every side. [camera.port] and [water] stand in the rig file as measured.", [
+  port: ["Port", "The board under water, through the window: near and far, tilted to every side. Say first, on the page Rig, how far and how thick the window is, and what water is at hand.", [
     { key: "distance-mm", label: "Optical centre to window", placeholder: "30±2", hint: "in mm; else from the photographs alone" }]],
   laser: ["Laser", "The laser’s line across the board: near, far, and between, over all distances that you will scan at.", [
     { key: "kind", label: "The sheet", kind: "select", options: [["", "plane"], "fan"] }, LASER, MARGIN]],
@@ -38,8 +38,8 @@ export function calibratePage(page, [named]) {
   const photos = step === "check" ? "source" : "images";
   const form = commandForm({
     page: "calibrate", command: `calibrate ${step}`, run: "Calibrate",
-    fields: [{ key: photos, label: "Photographs", kind: "select" }, ...BOARD,
-      step === "camera" ? { key: "rig", label: "Rig file", value: "rig.toml", hint: "made where it is missing" } : { key: "rig", label: "Rig file", kind: "select" },
+    fields: [{ key: photos, label: "Photographs", kind: "select", required: true }, ...BOARD,
+      step === "camera" ? { key: "rig", label: "Rig file", value: "rig.toml", hint: "made where it is missing" } : { key: "rig", label: "Rig file", kind: "select", required: true },
       ...more],
     onchange: () => { sight.write(); look(); },
   });

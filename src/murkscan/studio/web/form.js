@@ -3,7 +3,7 @@
 import { order, refresh, studio } from "./ask.js";
 import { button, make, note } from "./dom.js";
 
-// fields: { key, label, kind: number | text | select | switch, value, options, unit, hint, more, pick }
+// fields: { key, label, kind: number | text | select | switch, value, options, unit, hint, more, pick, required }
 export function commandForm({ page, command, fields, run = "Begin", values: fixed = {}, onchange = () => {} }) {
   const nameOf = () => (typeof command === "function" ? command(read()) : command);
   const inputs = new Map(fields.map((field) => [field.key, input(field)]));
@@ -51,6 +51,7 @@ export function commandForm({ page, command, fields, run = "Begin", values: fixe
   }
 
   async function begin() {
+    if (!element.reportValidity()) return;
     start.disabled = true;
     try {
       tell((await order("api/jobs", asked())).text, "");
@@ -76,11 +77,11 @@ export function commandForm({ page, command, fields, run = "Begin", values: fixe
   return element;
 }
 
-function input({ key, kind = "text", value = "", options = [], step = "any", min, max, placeholder = "" }) {
-  if (kind === "select") return fill(make("select", { name: key }), options, value);
+function input({ key, kind = "text", value = "", options = [], step = "any", min, max, placeholder = "", required = false }) {
+  if (kind === "select") return fill(make("select", { name: key, required }), options, value);
   if (kind === "switch") return make("input", { type: "checkbox", name: key, checked: Boolean(value) });
   const more = kind === "number" ? { type: "number", step, inputMode: "decimal" } : { type: "text" };
-  const element = make("input", { name: key, value, placeholder, autocomplete: "off", ...more });
+  const element = make("input", { name: key, value, placeholder, required, autocomplete: "off", ...more });
   if (min !== undefined) element.min = min;
   if (max !== undefined) element.max = max;
   return element;

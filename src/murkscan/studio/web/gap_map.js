@@ -8,7 +8,12 @@ export function gapMap() {
   const canvas = make("canvas", { className: "gaps" });
   const said = make("figcaption", {});
   const element = make("figure", { className: "tile" }, said, make("div", { className: "held" }, canvas));
-  said.textContent = "Gaps: the map comes with the first metres.";
+  clear();
+
+  function clear() {
+    canvas.width = canvas.height = 0;
+    said.textContent = "Gaps: the map comes with the first metres.";
+  }
 
   async function show(address, about) {
     const image = new Image();
@@ -31,7 +36,7 @@ export function gapMap() {
     context.putImageData(picture, 0, 0);
     said.textContent = wordsOf(about, counts);
   }
-  return { element, show };
+  return { element, show, clear };
 }
 
 function wordsOf(about, counts) {

@@ -5,8 +5,8 @@ import { make, note } from "./dom.js";
 const TONES = { good: "good", weak: "warning", low: "warning", lost: "bad", full: "bad", "too near": "bad", "too far": "bad", "too fast": "bad", unknown: "plain" };
 const WORDS = { "too near": "too near: go back", "too far": "too far: go nearer", "too fast": "too fast: go slower" };
 
-export function gauges(status) {
-  const { stand_off: off, speed, stripe, water, disk, coverage, preview, recorded } = status;
+// What the pilot steers by: it stands above the picture.
+export function steeringGauges({ stand_off: off, speed, stripe, coverage }) {
   return [
     gauge("Stand-off", off.value_m === null ? "–" : `${off.value_m.toFixed(2)} m`, off.state, scale(off.value_m, off.near_m, off.far_m)),
     gauge("Speed", speed.value_mm_s === null ? "–" : `${speed.value_mm_s.toFixed(0)} mm/s`, speed.state, scale(speed.value_mm_s, 0, speed.highest_mm_s, 0),
@@ -15,6 +15,12 @@ export function gauges(status) {
       stripe.share === null ? "" : `in ${(100 * stripe.share).toFixed(0)} % of the lines, noise ${(stripe.noise ?? 0).toFixed(1)}`),
     gauge("Covered", coverage.share === null ? "–" : `${(100 * coverage.share).toFixed(0)} %`, coverage.share === null ? "unknown" : coverage.share > 0.95 ? "good" : "weak", null,
       `${coverage.covered_m2.toFixed(2)} m², ${coverage.missing_m2.toFixed(2)} m² missing`),
+  ];
+}
+
+// What he looks at now and then.
+export function otherGauges({ water, preview, recorded, disk }) {
+  return [
     gauge("Water", water.attenuation_per_m === null ? "–" : `c ${water.attenuation_per_m.toFixed(1)} /m`, "unknown", null,
       water.reach_m === null ? "" : `the stripe reaches ${water.reach_m.toFixed(1)} m`),
     gauge("Preview", preview.latency_s === null ? "–" : `${(1e3 * preview.latency_s).toFixed(0)} ms`, "unknown", null,

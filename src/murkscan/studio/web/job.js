@@ -24,7 +24,8 @@ function describe(job) {
       make("span", { className: `state ${job.state}`, textContent: WORDS[job.state] }),
       make("code", { textContent: job.text }),
       isRunning
-        ? button("Stop", async () => { await order(`api/jobs/${job.name}/stop`, {}); refresh(); }, { className: "stop" })
+        ? job.page === "live" ? make("a", { className: "button", href: "#live", textContent: "To the dive" })  // which takes two clicks to end
+          : button("Stop", async () => { await order(`api/jobs/${job.name}/stop`, {}); refresh(); }, { className: "stop" })
         : button("×", () => { closed = job.name; refresh(); }, { className: "quiet", title: "Hide", "aria-label": "Hide" })),
     isRunning && (job.progress || job.page !== "live") ? progress(job.progress) : null,
     job.sentence && job.state !== "done" && !isRunning ? make("p", { className: "sentence", textContent: job.sentence }) : null,

@@ -4,7 +4,7 @@ import { addressOf, ask, listen, order, question, refresh, studio } from "./ask.
 import { button, keep, make, note } from "./dom.js";
 import { commandForm, fill } from "./form.js";
 import { gapMap } from "./gap_map.js";
-import { clock, gauges, warningsOf } from "./gauges.js";
+import { clock, otherGauges, steeringGauges, warningsOf } from "./gauges.js";
 import { motionFields, motionOf, showMotion } from "./motion.js";
 import { pointView } from "./points.js";
 
@@ -15,7 +15,7 @@ export function livePage(page) {
   const head = make("div", { className: "dive" }), alarms = make("div", { className: "alarms", role: "alert" });
   const picture = make("img", { alt: "The newest picture", className: "picture" });
   const canvas = make("canvas", { className: "cloud" });
-  const map = gapMap(), dials = make("div", { className: "gauges" });
+  const map = gapMap(), dials = make("div", { className: "gauges" }), others = make("div", { className: "gauges" });
   const pictureTile = make("figure", { className: "tile" }, make("figcaption", { textContent: "Picture, with the stripe as it is found" }), make("div", { className: "held" }, picture));
   const model = make("figure", { className: "tile" }, make("figcaption", { textContent: "Model: a preview, and no part of the scan; a drag turns it" }), make("div", { className: "held" }, canvas));
   const scene = make("div", { className: "scene" }, pictureTile, model, map.element);
@@ -23,7 +23,7 @@ export function livePage(page) {
   const dive = make("select", { "aria-label": "Dive" });
   const start = startForm();
   const keys = make("small", { className: "muted keys", textContent: "Keys: S picture or stripe · F whole screen · E end the dive (twice)" });
-  page.append(head, make("div", { className: "row ending" }, end, keys), alarms, scene, dials, start.element,
+  page.append(make("div", { className: "lead" }, head, make("div", { className: "row ending" }, keys, end)), alarms, dials, scene, others, start.element,
     make("div", { className: "toolbar" }, make("label", {}, make("span", { textContent: "Show the dive" }), dive)));
 
   let isGone = false, shown = "", next = 0, mapped = "", timer = 0, isPlain = false, running = null, isLoading = false;
@@ -34,7 +34,7 @@ export function livePage(page) {
     clearTimeout(timer);
     const name = dive.value;
     if (name && !isGone && !document.hidden) {
-      if (name !== shown) { shown = name; next = 0; mapped = ""; cloud?.clear(); }
+      if (name !== shown) { shown = name; next = 0; mapped = ""; cloud?.clear(); map.clear(); picture.removeAttribute("src"); delete picture.dataset.shown; }
       try { await show(name); } catch { /* the banner says that the studio is gone */ }
     }
     if (!isGone) timer = setTimeout(look, running ? 250 : 1500);
@@ -43,14 +43,17 @@ export function livePage(page) {
   async function show(name) {
     const told = await ask(question("api/dive", { name }));
     const { status } = told;
-    for (const part of [scene, dials, alarms]) part.hidden = !status;
+    // Of a dive that never came to a picture there is nothing to show but why.
+    const isEmpty = !status || (status.state === "failed" && !status.recorded.pictures);
+    for (const part of [scene, dials, others, alarms]) part.hidden = isEmpty;
     if (!status || isGone) return;
     const isStale = Date.now() / 1e3 - status.updated_s > STALE;
     const isOver = ["done", "failed"].includes(status.state);
     keep(head, [status.state, status.message, isStale, Math.floor(status.recorded.time_s), status.scan], () => headOf(status, isStale && !isOver, name));
-    dials.classList.toggle("over", isOver);
+    for (const part of [dials, others]) part.classList.toggle("over", isOver);
     keep(alarms, [status.warnings, isStale], () => (isStale ? [] : warningsOf(status)));
-    keep(dials, [status.stand_off, status.speed, status.stripe, status.coverage, status.water, status.preview, Math.floor(status.recorded.time_s), status.disk.state], () => gauges(status));
+    keep(dials, [status.stand_off, status.speed, status.stripe, status.coverage], () => steeringGauges(status));
+    keep(others, [status.water, status.preview, Math.floor(status.recorded.time_s), status.disk.state], () => otherGauges(status));
     const image = isPlain ? told.picture : told.stripe ?? told.picture;
     if (image && picture.dataset.shown !== image && !isLoading) load(image);
     if (told.gaps && told.gaps !== mapped) { mapped = told.gaps; map.show(addressOf(told.gaps), told.map).catch(() => { mapped = ""; }); }
@@ -108,7 +111,7 @@ export function livePage(page) {
     const dives = [...new Set([...(running ? [running.out] : []), ...state.found.dives])];
     fill(dive, dives, running ? running.out : dive.value);
     dive.closest("div").hidden = dives.length < 2 || Boolean(running);
-    for (const part of [scene, dials, alarms]) if (!dives.length) part.hidden = true;
+    for (const part of [scene, dials, others, alarms]) if (!dives.length) part.hidden = true;
     if (!dives.length) keep(head, "none", () => make("h1", { textContent: "Record and scan live" }));
     start.sync(state);
   });
@@ -132,11 +135,13 @@ function startForm() {
   const form = commandForm({
     page: "live", command: "live", run: "Record and scan live",
     fields: [
-      { key: "source", label: "Source", placeholder: "rtsp://…, udp://…, stream.sdp, 0", list: [], hint: "a stream, a camera’s number, or a recording to replay" },
-      { key: "rig", label: "Rig", kind: "select" },
-      ...motionFields,
+      { key: "source", label: "Source", placeholder: "rtsp://…", list: [], required: true, hint: "a stream (rtsp://…, udp://…, an SDP file), a camera’s number, or a recording to replay" },
+      { key: "rig", label: "Rig", kind: "select", required: true },
+      ...motionFields(true),
       { key: "spacing-mm", label: "Wanted spacing", unit: "mm", kind: "number", value: 5 },
-      { key: "out", label: "Folder for the dive", value: "dive" },
+      { key: "out", label: "Folder for the dive", value: "dive", required: true },
+      { key: "extractor", label: "How the stripe is found", kind: "select", options: [["", "murk"], "gray-gravity"], hint: "gray-gravity is quicker, for clear water", more: true },
+      { key: "laser", label: "Number of the laser", hint: "all of them unless given", more: true },
     ],
     onchange: ({ how }) => showMotion(form, how),
   });

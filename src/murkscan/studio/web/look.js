@@ -27,7 +27,7 @@ export function lookPage(page, [named]) {
     if (!name) return;
     try {
       const scan = await ask(question("api/scan", { name }));
-      keep(model, [name, scan.page, scan.picture], () => modelOf(scan));
+      keep(model, [name, scan.page, scan.pictures], () => modelOf(scan));
       keep(measured, [scan.measures, scan.unstated], () => measuresOf(scan));
       keep(forms, name, () => [make("h2", { textContent: "Measure" }), measureForms(name)]);
       keep(stages, [scan.stages, scan.files, scan.report, scan.accepted], () => stagesOf(scan));
@@ -74,13 +74,22 @@ export function lookPage(page, [named]) {
 }
 
 function modelOf(scan) {
-  if (!scan.page) return scan.picture ? make("img", { src: addressOf(scan.picture), alt: "The scanned surface" }) : note("There is no model yet: it comes with the stage view.");
+  if (!scan.page && !scan.pictures.length) return note("There is no model yet: it comes with the stage view.");
+  if (!scan.page) return picturesOf(scan);
+  if (!document.createElement("canvas").getContext("webgl2")) {
+    return [note("This browser has no WebGL 2, so that the model cannot be turned here: these are its pictures. Measures are taken by typed places.", "warning"), picturesOf(scan)];
+  }
   const frame = make("iframe", { className: "viewer", src: addressOf(scan.page), title: "The model, to turn, cut and measure" });
   return [frame, make("div", { className: "row" },
     make("a", { className: "button", href: addressOf(scan.page), target: "_blank", textContent: "Model on its own" }),
     scan.report ? make("a", { className: "button", href: addressOf(scan.report), target: "_blank", textContent: "Report" }) : null,
     make("small", { textContent: "Measure two places, or cut, in the model: “Take this measure” there puts it below. Or fit a ball, a pipe, a plane or a step: “Pick” below, then click the place." }))];
 }
+
+const picturesOf = ({ pictures }) => make("div", { className: "gallery" }, pictures.map((name) => {
+  const side = name.split("?")[0].split("/").at(-1).replace(".png", "");
+  return make("figure", {}, make("a", { href: addressOf(name), target: "_blank" }, make("img", { src: addressOf(name), alt: `The scanned surface, ${side}` })), make("figcaption", { textContent: side }));
+}));
 
 const UNITS = { m: ["mm", 1e3], m2: ["cm²", 1e4], m3: ["cm³", 1e6], rad: ["°", 180 / Math.PI] };
 
@@ -154,10 +163,10 @@ function scanForm() {
   const form = commandForm({
     page: "look", command: "scan", run: "Scan",
     fields: [
-      { key: "recording", label: "Recording", kind: "select" },
-      { key: "rig", label: "Rig", kind: "select" },
-      ...motionFields,
-      { key: "out", label: "Folder for the scan", value: "scan" },
+      { key: "recording", label: "Recording", kind: "select", required: true },
+      { key: "rig", label: "Rig", kind: "select", required: true },
+      ...motionFields(),
+      { key: "out", label: "Folder for the scan", value: "scan", required: true },
       { key: "fps", label: "Pictures a second", kind: "number", hint: "of a folder without times.csv", more: true },
       { key: "extractor", label: "How the stripe is found", kind: "select", options: [["", "murk"], "gray-gravity", "gaussian", "steger", "threshold-skeleton"], more: true },
       { key: "mesher", label: "How the surface is made", kind: "select", options: [["", "grid"], "poisson"], more: true },

@@ -1,12 +1,13 @@
 // What is calibrated and how well, what comes next, and a board to print.
 
 import { addressOf, ask, listen, question } from "./ask.js";
+import { describeCard } from "./describe.js";
 import { draw, keep, make, note, table } from "./dom.js";
 import { commandForm, fill, uploader } from "./form.js";
 
 const NEXT = {
   camera: "Photograph a board in air, tilted to every side, 15 times or more.",
-  port: "Only behind a window: write [camera.port] and [water] into the rig file as measured, then photograph a board under water.",
+  port: "Only behind a window: say below how far and how thick it is and what water is at hand, then photograph a board under water.",
   laser: "Photograph the laser's line on a board: near, far, and between.",
   mount: "Only for a vehicle with a log of poses: photograph a board that stands still from many places.",
 };
@@ -14,11 +15,13 @@ const NEXT = {
 export function rigPage(page) {
   const chosen = make("select", { "aria-label": "Rig" });
   const cards = make("div", { className: "cards" });
-  const none = note("There is no rig file in this folder yet: calibrate a camera, and it is made; or bring one.", "");
+  const none = make("div", { className: "row" }, note("There is no rig in this folder yet: calibrate a camera, say below what is known of it, or bring a rig file."),
+    make("a", { className: "button", href: "#calibrate/camera", textContent: "Calibrate a camera" }));
+  const known = describeCard();
   const head = make("div", { className: "toolbar" }, make("label", {}, make("span", { textContent: "Rig" }), chosen),
     uploader({ label: "Bring a rig file", accept: ".toml", multiple: false, nameOf: (file) => file.name }));
   const cut = note("This folder holds more than is looked at: begin the studio in one for this work alone.", "warning");
-  page.append(make("h1", { textContent: "Rig" }), head, cut, none, cards, board());
+  page.append(make("h1", { textContent: "Rig" }), head, cut, none, cards, known.element, board());
   chosen.onchange = load;
 
   let last = "";
@@ -26,6 +29,7 @@ export function rigPage(page) {
     const name = chosen.value;
     cards.hidden = !name;
     if (!name) return;
+    known.name(name);
     try {
       const rig = await ask(question("api/rig", { name }));
       keep(cards, rig, () => describe(rig));

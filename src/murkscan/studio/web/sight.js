@@ -9,7 +9,7 @@ export function sightCard(step, board, taken) {
   const form = commandForm({
     page: "sight", command: "calibrate photograph", run: "Begin",
     fields: [
-      { key: "source", label: "Camera", placeholder: "rtsp://…, udp://…, stream.sdp, 0", list: [], hint: "a stream, or the number of a camera here" },
+      { key: "source", label: "Camera", placeholder: "rtsp://…", list: [], required: true, hint: "a stream (rtsp://…, udp://…, an SDP file), or the number of a camera here" },
       { key: "folder", label: "Folder for the photographs", value: `boards-${step}` }],
   });
   form.also = () => { const { wide, high, count } = board(); return { board: `${wide}x${high}`, boards: count }; };
