@@ -28,9 +28,9 @@ from deck_pictures import (
 from harness import Figure, tell
 from kept import Kept, make_in_pieces
 
-from murkscan.calibrate import Chessboard
+from murkscan.calibrate import BoardView, Chessboard, calibrate_camera
 from murkscan.calibrate.board.corners import find_board
-from murkscan.calibrate.so_far import judge_so_far
+from murkscan.calibrate.so_far import SoFar, judge_so_far
 from murkscan.distribute import Threads
 from murkscan.errors import MurkscanError
 from murkscan.extract import Murk
@@ -272,11 +272,15 @@ def _photograph(folder: Path, before: Sequence[Image], spoilt: Image) -> tuple[s
     return said, time.perf_counter() - began
 
 
+def _judge_camera(views: Sequence[BoardView], size: tuple[int, int]) -> SoFar:
+    return judge_so_far("camera", views, BOARD, size, lambda: calibrate_camera(views, BOARD, size))
+
+
 def _hold_flat() -> Told:
     photos = [draw_flat_board(number) for number in range(12)]
     began = time.perf_counter()
     views = [find_board(photo, BOARD, name=f"{k}") for k, photo in enumerate(photos)]
-    judged = judge_so_far(views, BOARD, (photos[0].shape[1], photos[0].shape[0]))
+    judged = _judge_camera(views, (photos[0].shape[1], photos[0].shape[0]))
     spent = time.perf_counter() - began
     is_right = "face the camera straight on" in judged.verdict and "tilted" in judged.verdict
     return Told("boards all flat", judged.verdict, spent, is_right)
@@ -302,7 +306,7 @@ def _watch_clean_boards(made: Path, name: str) -> Told:
     photos = [WAYS[name](image) for image in make_boards(made)[0]]
     said = [words for words in map(_say_of_photo, photos) if words]
     views = [find_board(photo, BOARD) for photo in photos]
-    judged = judge_so_far(views, BOARD, (photos[0].shape[1], photos[0].shape[0]))
+    judged = _judge_camera(views, (photos[0].shape[1], photos[0].shape[0]))
     said += [] if judged.is_good else [judged.verdict]
     return Told(f"boards {name}", said[0] if said else "", 0.0, not said)
 

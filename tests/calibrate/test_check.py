@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from murkscan.calibrate import BoardView
-from murkscan.calibrate.check import LinedBoard, check_on_boards, judge_length
+from murkscan.calibrate.check import LinedBoard, check_on_boards, judge_boards, judge_length
 from murkscan.errors import InputError, NotEnoughData
 from murkscan.optics import perturb_rig
 from murkscan.types.rig_covariance import RigCovariance
@@ -61,6 +61,16 @@ def test_salt_water_taken_for_fresh_is_found_out():
     assert abs(check.measured / check.known - 1) > 1e-3
     assert not verdict.is_good
     assert "Check that [water]" in str(verdict)
+
+
+def test_squares_that_another_camera_saw_measure_nothing():
+    photos = photograph(0.1, 3)
+    assert judge_boards(check_on_boards(photos, BOARD, RIG), RIG).is_usable
+    camera = replace(RIG.camera, distortion=RIG.camera.distortion + np.eye(5)[0] / 2)
+    other = replace(RIG, camera=camera)
+    verdict = judge_boards(check_on_boards(photos, BOARD, other), other)
+    assert not verdict.is_usable
+    assert "corners are off by" in str(verdict)
 
 
 def test_two_photos_are_too_few():

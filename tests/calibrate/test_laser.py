@@ -114,3 +114,16 @@ def test_boards_over_a_small_range_are_a_warning():
     near = [seen[i] for i in np.argsort(np.abs(np.array(depths) - 0.6))[:6]]
     verdict = judge(calibrate_lasers(*as_photos(near), BOARD, rig))
     assert "add photos nearer and farther" in str(verdict)
+
+
+def test_boards_that_do_not_fit_the_camera_at_all_make_no_usable_laser():
+    """The pictures of the laser's line were stretched to another format."""
+    rig, random = rig_behind(None), np.random.default_rng(5)
+    known = adjust(replace(rig, lasers=()), see_boards(random, rig, 12), INTRINSICS).rig
+    stretched = replace(rig.camera, focal_length=(1400.0, 1560.0))
+    seen = see_stripes(np.random.default_rng(6), replace(rig, camera=stretched), 25)
+    found = calibrate_lasers(*as_photos(seen), BOARD, known)
+    verdict = judge(found)
+    assert found.rms > 5
+    assert not verdict.is_usable
+    assert str(verdict).startswith("Not usable: The corners are off by")

@@ -140,6 +140,7 @@ def test_boards_are_found_in_a_folder_as_photographs_come(folder, ask):
     assert (first["reason"], len(first["corners"])) == ("", 54)
     assert second["reason"] == "shows no chessboard"
     assert "Need at least 4 views" in told["so_far"]["verdict"]
+    assert told["so_far"]["precisions"] == []
     assert ask.get("api/boards", params={"folder": "boards", "board": "9"}).status_code == 400
 
 

@@ -12,17 +12,18 @@ import numpy as np
 from jaxtyping import Float
 
 from ..errors import InputError, NotEnoughData
-from ..optics import back_project, intersect_rays_with_sheet, perturb_rig
+from ..optics import back_project, intersect_rays_with_sheet, perturb_rig, project
 from ..optics.uncertainty import error_modes
-from ..types.arrays import Scalars
+from ..types.arrays import Pixels, Scalars
 from ..types.plane import Plane
 from ..types.pose import Pose
 from ..types.rig import Rig
 from .adjust.observations import index_of
+from .adjust.solve import rms_of
 from .board.chessboard import Chessboard
 from .board.pose import locate_seen_board
 from .board.view import BoardView
-from .verdict import CalibrationVerdict
+from .verdict import CalibrationVerdict, corners_misfit
 
 MIN_PHOTOS = 3
 """Photos below which chance cannot be told from a wrong rig."""
@@ -52,6 +53,11 @@ class LinedBoard:
         points = self.view.places(board.points())
         return locate_seen_board(self.view.corners, points, rig.camera, index_of(rig))
 
+    def misfit(self, board: Chessboard, rig: Rig) -> Pixels:
+        """Give corner as found minus corner as projected [px]."""
+        points = self.locate(board, rig) @ self.view.places(board.points())
+        return self.view.corners - project(rig.camera, points, index_of(rig))
+
 
 @dataclass(frozen=True, eq=False)
 class BoardCheck:
@@ -68,6 +74,8 @@ class BoardCheck:
     sigma_common: float | None
     """Standard deviation of their mean that follows from the rig's covariance [m]; None where it
     states none."""
+    rms: float
+    """Root mean square distance of a corner from its projection [px]."""
 
     @property
     def measured(self) -> float:
@@ -126,6 +134,7 @@ def check_on_boards(
         distances=np.array([float(np.linalg.norm(pose @ middle)) for pose in poses]),
         squares=sizes * board.square,
         sigma_common=_common(used, board, rig, laser),
+        rms=rms_of(np.concatenate([photo.misfit(board, rig) for photo in used])),
     )
 
 
@@ -171,6 +180,19 @@ def _size_of(photo: LinedBoard, board: Chessboard, rig: Rig, laser: int) -> floa
         step = gap_now * (now - before) / (gap_now - gap_before)
         before, gap_before, now = now, gap_now, now - step
     return now
+
+
+def judge_boards(check: BoardCheck, rig: Rig) -> CalibrationVerdict:
+    """Judge a board's squares as measured, unless its corners do not fit the rig at all."""
+    if corners_misfit(check.rms, rig.camera.focal_length[0]):
+        advice = (
+            f"The corners are off by {check.rms:.2f} px: this camera did not see these boards so, "
+            "and squares on them measure nothing. Check that focus, zoom and picture size are "
+            "those of the calibration, and that window and [water] are as the rig file says."
+        )
+        return CalibrationVerdict((advice,), "", is_usable=False)
+    is_common_known = check.sigma_common is not None
+    return judge_length(check.measured, check.known, check.sigma, is_common_known=is_common_known)
 
 
 def judge_length(

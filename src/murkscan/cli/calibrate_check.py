@@ -4,10 +4,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import InputError
+from ..ui.calibration_values import read_margin
 from ..ui.choices import ExtractorName, make_extractor
 from ..ui.values import read_numbers
 from .calibrate import parse_board
-from .calibrate_laser import parse_margin
 from .calibrate_result import say_unused
 from .progress import progress_bars
 from .words import print_table, say, say_verdict
@@ -76,7 +76,7 @@ def check(
             "--board, --square-mm and --rig."
         )
     chessboard = parse_board(board, square_mm)
-    margin = None if margin_mm is None else parse_margin(margin_mm)
+    margin = None if margin_mm is None else read_margin(margin_mm)
     from ..survey.calibrate_check import check_on_photos
 
     with progress_bars() as progress:
@@ -115,7 +115,7 @@ def _place(text: str) -> list[float]:
 
 def _print_photos(result: "BoardCheckResult") -> None:
     found = result.check
-    say_verdict(str(result.verdict), result.verdict.is_good)
+    say_verdict(str(result.verdict), result.verdict.is_good, is_usable=result.verdict.is_usable)
     rows: list[tuple[str, ...]] = [
         (name, f"{1e3 * distance:.0f}", f"{1e3 * square:.3f}", f"{square / found.known - 1:+.2%}")
         for distance, name, square in sorted(

@@ -1,18 +1,15 @@
 """murkscan calibrate laser: find a laser's sheet, in air or under water."""
 
 import math
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from ..errors import InputError
+from ..ui.calibration_values import read_lasers, read_margin
 from ..ui.choices import ExtractorName, make_extractor
-from ..ui.values import read_numbers
 from .calibrate import parse_board
 from .calibrate_result import print_result
 from .paths import PhotoPath, RigFile
 from .progress import progress_bars
-
-if TYPE_CHECKING:
-    from ..calibrate import Margin
 
 
 def laser(
@@ -65,7 +62,7 @@ def laser(
         The way to find the stripe.
     """
     chessboard = parse_board(board, square_mm)
-    margin = None if margin_mm is None else parse_margin(margin_mm)
+    margin = None if margin_mm is None else read_margin(margin_mm)
     for flag, value in [
         ("--origin-sigma-mm", origin_sigma_mm),
         ("--port-tilt-sigma-deg", port_tilt_sigma_deg),
@@ -87,31 +84,10 @@ def laser(
             chessboard,
             rig,
             margin=margin,
-            laser=_parse_numbers(laser),
+            laser=read_lasers(laser),
             fan=fan if kind == "fan" else None,
             index_sigma=index_sigma,
             extractor=make_extractor(extractor, ()),
             progress=progress,
         )
     print_result(result, rig)
-
-
-def _parse_numbers(text: str) -> tuple[int, ...]:
-    """Read the numbers of --laser."""
-    parts = [part.strip() for part in text.split(",")]
-    if not all(part.isdigit() for part in parts) or len(set(parts)) < len(parts):
-        raise InputError(f"--laser {text!r} is no laser; give its number from 0, or several: 0,1.")
-    return tuple(sorted(int(part) for part in parts))
-
-
-def parse_margin(text: str) -> "Margin":
-    """Make the margin of --margin-mm."""
-    sides = read_numbers(text, 4)
-    if sides is None:
-        raise InputError(
-            f"--margin-mm {text!r} is not LEFT,RIGHT,TOP,BOTTOM; give four numbers of millimetres, "
-            "such as 120,80,60,60."
-        )
-    from ..calibrate import Margin
-
-    return Margin(*(side / 1e3 for side in sides))

@@ -1,19 +1,14 @@
 """murkscan calibrate port: find how the camera's port stands, in the water at hand."""
 
 import math
-import re
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from ..errors import InputError
+from ..ui.calibration_values import read_measured
 from .calibrate import parse_board
 from .calibrate_result import print_result
 from .paths import PhotoPath, RigFile
 from .progress import progress_bars
-
-if TYPE_CHECKING:
-    from ..survey.calibrate_port import Measured
-
-_NUMBER = r"[0-9]*\.?[0-9]+"
 
 
 def port(
@@ -56,7 +51,7 @@ def port(
     from ..survey.calibrate_port import PortKnowledge, calibrate_port_from_photos
 
     knowledge = PortKnowledge(
-        distance=None if distance_mm is None else parse_measured(distance_mm),
+        distance=None if distance_mm is None else read_measured(distance_mm),
         index_sigma=_check_sigma(index_sigma),
         is_index_free=index == "free",
         is_camera_free=camera == "free",
@@ -66,19 +61,6 @@ def port(
             images, chessboard, rig, knowledge=knowledge, progress=progress
         )
     print_result(result, rig)
-
-
-def parse_measured(text: str) -> "Measured":
-    """Make metres of a text such as 30±2 in millimetres."""
-    match = re.fullmatch(rf"\s*({_NUMBER})\s*(?:±|\+/?-)\s*({_NUMBER})\s*", text)
-    if match is None or not float(match[2]) > 0:
-        raise InputError(
-            f"--distance-mm {text!r} is not a value with its standard deviation; write it as 30±2 "
-            "or 30+-2, in millimetres."
-        )
-    from ..survey.calibrate_port import Measured
-
-    return Measured(float(match[1]) / 1e3, float(match[2]) / 1e3)
 
 
 def _check_sigma(sigma: float) -> float:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 def print_result(result: "CalibrationResult", rig: Path) -> None:
     """Print the result of a calibration that was written to a rig file."""
     found = result.calibration
-    say_verdict(str(result.verdict), result.verdict.is_good)
+    say_verdict(str(result.verdict), result.verdict.is_good, is_usable=result.verdict.is_usable)
     _print_errors(result.verdict)
     _print_parameters(found)
     for number in found.lasers:
@@ -43,13 +43,17 @@ def print_result(result: "CalibrationResult", rig: Path) -> None:
         tell("note", remark)
     tell("made", f"written to {rig}; as it is now it is kept as {result.record}")
     tell("look", f"open {result.page}: every photo, and what was found in it")
-    tell("next", *_next_steps(found.step, result.verdict.is_good, rig))
+    tell("next", *_next_steps(found.step, result.verdict, rig))
 
 
-def _next_steps(step: str, is_good: bool, rig: Path) -> list[str]:
+def _next_steps(step: str, verdict: "CalibrationVerdict", rig: Path) -> list[str]:
     """Say what to do after a step of the calibration."""
-    again = [] if is_good else ["what the verdict asks for, and this command again; or go on:"]
-    return [*again, *(line.format(rig=quote(str(rig))) for line in _NEXT[step])]
+    if not verdict.is_usable:
+        return ["what the verdict asks for, and this command again"]
+    following = [line.format(rig=quote(str(rig))) for line in _NEXT[step]]
+    if verdict.is_good:
+        return following
+    return ["what the verdict asks for, and this command again; or go on:", *following]
 
 
 def say_unused(unused: Mapping[str, str], *, used: int) -> None:

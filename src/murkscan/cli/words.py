@@ -28,11 +28,11 @@ def say(sentence: str) -> None:
     _print(sentence, 0)
 
 
-def say_verdict(verdict: str, is_good: bool) -> None:
+def say_verdict(verdict: str, is_good: bool, *, is_usable: bool = True) -> None:
     """Print a verdict in its colour."""
     from rich.text import Text
 
-    style = f"bold {'green' if is_good else 'yellow'}"
+    style = f"bold {'green' if is_good else 'yellow' if is_usable else 'red'}"
     _console().print(Text(verdict, style=style), soft_wrap=not sys.stdout.isatty())
 
 

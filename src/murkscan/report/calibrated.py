@@ -14,7 +14,7 @@ _RESIDUALS = {
     "dispersion": "photos scatter {} times their points' noise",
 }
 """Numbers of a step's record that tell how good it is."""
-_DOUBT = "Usable, but"
+_DOUBTS = ("Usable, but", "Not usable")
 """How the verdict of a step with advice begins."""
 
 
@@ -35,7 +35,12 @@ class CalibrationStep:
     @property
     def is_good(self) -> bool:
         """Tell whether the calibration left nothing to be wished for."""
-        return bool(self.verdict) and not self.verdict.startswith(_DOUBT)
+        return bool(self.verdict) and not self.verdict.startswith(_DOUBTS)
+
+    @property
+    def is_usable(self) -> bool:
+        """Tell whether the calibration said that it may be scanned with, or said nothing."""
+        return not self.verdict.startswith(_DOUBTS[1])
 
 
 def read_steps(record: Mapping[str, Any], *, recorded: date | None) -> list[CalibrationStep]:

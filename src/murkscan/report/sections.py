@@ -175,7 +175,12 @@ def _speed_verdict(speed: Speed, *, is_asked: bool) -> list[Block]:
 
 def _calibration_verdict(steps: Sequence[CalibrationStep]) -> list[Block]:
     notes: list[Block] = []
-    if poor := [step.name for step in steps if step.verdict and not step.is_good]:
+    bad = [step.name for step in steps if not step.is_usable]
+    if bad:
+        text = f"Not usable, by the verdict on {', '.join(bad)}: its corners did not fit."
+        notes.append(Note(text, "warning"))
+    poor = [s.name for s in steps if s.verdict and not s.is_good and s.name not in bad]
+    if poor:
         notes.append(Note(f"Usable, with advice on {', '.join(poor)}: see its verdict.", "warning"))
     elif all(step.is_good for step in steps):
         notes.append(Note("Good in every step that was recorded.", "good"))

@@ -142,8 +142,7 @@ class _Studio:
 
     async def boards(self, request: Request) -> Any:
         """Say which photos of a folder show a board."""
-        asked = request.query_params
-        task = partial(self._boards.tell, asked.get("folder", ""), asked.get("board", ""))
+        task = partial(self._boards.tell, dict(request.query_params))
         return await to_thread.run_sync(task)
 
     async def sight(self, request: Request) -> Any:
@@ -225,6 +224,8 @@ def _said(answer: Callable[[Request], Awaitable[Any]]) -> Answer:
 async def _refuse(_: Request, error: Exception) -> Response:
     status = error.status_code if isinstance(error, HTTPException) else 500
     words = {404: "There is no such page.", 405: "That cannot be asked of this page."}
+    if isinstance(error, HTTPException) and status == 413:
+        words[status] = error.detail
     return PlainTextResponse(words.get(status, "The studio cannot answer that."), status)
 
 

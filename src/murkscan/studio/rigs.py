@@ -63,6 +63,7 @@ def _step(step: str, record: Any, *, is_there: bool, folder: str = "") -> dict[s
         "is_there": is_there,
         "is_calibrated": bool(record),
         "is_good": str(record.get("verdict", "")).startswith("Good"),
+        "is_usable": not str(record.get("verdict", "")).startswith("Not usable"),
         "verdict": str(record.get("verdict", "")),
         "date": str(record.get("date", "")),
         "board": str(record.get("board", "")),

@@ -11,11 +11,12 @@ import numpy as np
 from ..calibrate.board.chessboard import Chessboard
 from ..calibrate.board.corners import find_board
 from ..calibrate.board.view import BoardView
-from ..calibrate.so_far import CameraSoFar, judge_so_far
+from ..calibrate.so_far import SoFar
 from ..capture.folder import list_pictures
 from ..capture.photos import Photo
-from ..errors import FormatError
+from ..errors import FormatError, MurkscanError
 from ..io.images import read_colour
+from .calibrate_so_far import AbstractStep
 
 _MOST = 300
 """Photos that are looked at; a calibration wants fifteen to fifty."""
@@ -33,31 +34,39 @@ class LookedAt:
 
 
 class BoardFolder:
-    """The photos of one folder with one board, looked at by a thread of its own."""
+    """The photos of one folder with one kind of board, looked at by a thread of its own."""
 
-    def __init__(self, folder: Path, board: Chessboard) -> None:
-        self.folder, self.board = folder, board
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
         self._known: dict[str, LookedAt] = {}
-        self._judged: tuple[int, CameraSoFar | None] = (-1, None)
+        self._judged: tuple[str, SoFar | str] = ("", "")
         self._lock = threading.Lock()
         self._worker: threading.Thread | None = None
 
-    def look(self) -> tuple[list[LookedAt], int, CameraSoFar | None]:
+    def look(
+        self, board: Chessboard, step: AbstractStep
+    ) -> tuple[list[LookedAt], int, SoFar | str]:
         """Say what is known by now, and go on looking in the background.
 
+        Args:
+            board: The board; with as many corners each time.
+            step: What the photos are taken for.
+
         Returns:
-            The photos that were looked at in order, how many there are, and what they are worth;
-            None until the first judgement.
+            The photos that were looked at in order, how many there are, and what they are worth, or
+            in a sentence why that cannot be said; nothing until the first judgement.
         """
         names = list_pictures(self.folder)[:_MOST]
         with self._lock:
             if self._worker is None or not self._worker.is_alive():
-                self._worker = threading.Thread(target=self._work, args=(names,), daemon=True)
+                self._worker = threading.Thread(
+                    target=self._work, args=(names, board, step), daemon=True
+                )
                 self._worker.start()
             known = [self._known[name] for name in names if name in self._known]
             return known, len(names), self._judged[1]
 
-    def _work(self, names: Sequence[str]) -> None:
+    def _work(self, names: Sequence[str], board: Chessboard, step: AbstractStep) -> None:
         for name in names:
             path = self.folder / name
             try:
@@ -65,19 +74,24 @@ class BoardFolder:
             except OSError:
                 continue
             if name not in self._known or self._known[name].stamp != stamp:
-                seen = _look_at(path, self.board, stamp)
+                seen = _look_at(path, board, stamp)
                 with self._lock:
                     self._known[name] = seen
-        self._judge([self._known[name] for name in names if name in self._known])
+        self._judge([self._known[name] for name in names if name in self._known], board, step)
 
-    def _judge(self, seen: Sequence[LookedAt]) -> None:
-        key = hash(tuple((one.view.name, one.stamp) for one in seen))
+    def _judge(self, seen: Sequence[LookedAt], board: Chessboard, step: AbstractStep) -> None:
+        names = tuple((one.view.name, one.stamp) for one in seen)
+        key = repr((names, board, step, step.changed()))
         sizes = Counter(one.size for one in seen if one.view.is_found)
         if key == self._judged[0] or not sizes:
             return
         size = sizes.most_common(1)[0][0]
         views = [one.view for one in seen if one.size == size]
-        judged = judge_so_far(views, self.board, size)
+        judged: SoFar | str
+        try:
+            judged = step.judge(self.folder, views, board, size)
+        except MurkscanError as error:
+            judged = str(error)
         with self._lock:
             self._judged = (key, judged)
 

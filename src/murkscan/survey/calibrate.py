@@ -67,6 +67,8 @@ class BoardSession:
     stripes: Sequence[StripeOnBoard] = ()
     unused: dict[str, str] = field(default_factory=dict)
     """Photos that are not used, and why."""
+    remarks: tuple[str, ...] = ()
+    """What is odd about the photos, which may explain an error."""
 
     @classmethod
     def open(
@@ -97,19 +99,15 @@ class BoardSession:
         self.unused |= {view.name: view.reason for view in self.views if not view.is_found}
         return self.views
 
-    def solve(self, adjust: Callable[[], Calibration], hint: str = "") -> Calibration:
-        """Adjust; where there is no answer, the photos are drawn, and the error says where.
-
-        Args:
-            adjust: Adjusts what was found.
-            hint: What may explain an error, to be said with it.
-        """
+    def solve(self, fit: "Fit") -> Calibration:
+        """Fit; where there is no answer, the photos are drawn, and the error says where."""
         try:
-            return adjust()
+            return fit(self)
         except EstimationError as error:
             self._draw(None)
+            told = " ".join([str(error), *self.remarks])
             raise type(error)(
-                f"{error}{hint} The photos with what was found in them lie in {self.folder}."
+                f"{told} The photos with what was found in them lie in {self.folder}."
             ) from error
 
     def finish(
@@ -142,8 +140,9 @@ class BoardSession:
             text = write_page(calibration, verdict, self.unused, title=title, suffix=SUFFIX)
             aside.write_text(text, "utf-8")
         return CalibrationResult(
-            calibration, verdict, len(self.views), self.unused, self.folder, page, kept, remarks
-        )
+            calibration, verdict, len(self.views), self.unused, self.folder, page, kept,
+            (*self.remarks, *remarks),
+        )  # fmt: skip
 
     def _say_what_lost_its_covariance(self, calibration: Calibration) -> tuple[str, ...]:
         """Name the parts of the rig that were calibrated with the camera as it was before."""
@@ -162,6 +161,10 @@ class BoardSession:
             self.photos, self.views, self.folder, board=self.board, stripes=self.stripes,
             calibration=calibration, unused=self.unused, progress=self.progress,
         )  # fmt: skip
+
+
+Fit = Callable[[BoardSession], Calibration]
+"""Calibrates one step on the boards that a session found, and writes nothing."""
 
 
 def doubt_square(board: Chessboard, tables: Mapping[str, Any], step: str) -> Iterator[str]:
@@ -204,3 +207,9 @@ def _moved(calibration: Calibration) -> dict[int, Any]:
         for number, laser in enumerate(rig.lasers)
         if any(name.startswith(f"laser[{number}]") for name in rig.covariance.names)
     }
+
+
+def size_in(tables: Mapping[str, Any]) -> tuple[int, int]:
+    """Give width and height of a rig's pictures [px], of the tables of its file."""
+    width, height = tables["camera"]["size"]
+    return int(width), int(height)

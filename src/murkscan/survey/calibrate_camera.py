@@ -6,6 +6,7 @@ from typing import Any
 
 from ..calibrate.board.charuco import Markers
 from ..calibrate.board.chessboard import Chessboard
+from ..calibrate.calibration import Calibration
 from ..calibrate.camera import calibrate_camera
 from ..errors import InputError
 from ..io.rig_toml import read_tables
@@ -41,11 +42,16 @@ def calibrate_camera_from_photos(
     """
     tables = _read_without_port(rig_path)
     session = BoardSession.open(path, board, rig_path, "camera", tables=tables, progress=progress)
-    views = session.find_boards(markers=markers)
-    found = session.solve(lambda: calibrate_camera(views, board, session.size))
+    session.find_boards(markers=markers)
+    found = session.solve(fit_camera)
     rig = replace(found.rig, wavelength=wavelength)
     found = replace(found, adjustment=replace(found.adjustment, rig=rig))
     return session.finish(found, ["camera"], title="Camera")
+
+
+def fit_camera(session: BoardSession) -> Calibration:
+    """Calibrate the camera on the boards that were found."""
+    return calibrate_camera(session.views, session.board, session.size)
 
 
 def _read_without_port(rig_path: Path) -> dict[str, Any]:

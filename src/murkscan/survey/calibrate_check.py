@@ -1,13 +1,14 @@
 """Check a rig on a known length: a board with the line on it, or two points of a scan."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from ..calibrate.board.chessboard import Chessboard, Margin
-from ..calibrate.check import BoardCheck, LinedBoard, check_on_boards, judge_length
+from ..calibrate.board.view import BoardView
+from ..calibrate.check import BoardCheck, LinedBoard, check_on_boards, judge_boards, judge_length
 from ..calibrate.verdict import CalibrationVerdict
 from ..capture.photos import BoardPhotos
 from ..errors import InputError
@@ -87,19 +88,42 @@ def check_on_photos(
     rig.laser(laser)
     photos = BoardPhotos.open(path)
     views, _ = find_boards(photos, board, progress, size=rig.camera.size)
+    check, reasons = check_views(
+        photos, views, board, rig, margin=margin, laser=laser, extractor=extractor,
+        progress=progress,
+    )  # fmt: skip
+    unused = photos.skipped | reasons
+    unused |= {view.name: view.reason for view in views if not view.is_found}
+    return BoardCheckResult(check, judge_boards(check, rig), len(views), unused)
+
+
+def check_views(
+    photos: BoardPhotos,
+    views: Sequence[BoardView],
+    board: Chessboard,
+    rig: Rig,
+    *,
+    margin: Margin | None = None,
+    laser: int = 0,
+    extractor: AbstractExtractor | None = None,
+    progress: Progress = silent,
+) -> tuple[BoardCheck, dict[str, str]]:
+    """Measure the squares of boards that were found already.
+
+    Returns:
+        The squares, and the photos with a board that are not used, and why.
+
+    Raises:
+        InputError: The size comes out wrong by more than 30 %.
+        NotEnoughData: Fewer than three photos show the board and the line.
+    """
     margin = margin or Margin(board.square, board.square, board.square, board.square)
     finder = StripeFinder(photos, views, board, margin, rig, extractor or GrayGravity())
     by_name = {view.name: view for view in views}
     lined = [
         LinedBoard(by_name[stripe.name], stripe.pixels) for stripe in finder.find([laser], progress)
     ]
-    check = check_on_boards(lined, board, rig, laser)
-    verdict = judge_length(
-        check.measured, check.known, check.sigma, is_common_known=check.sigma_common is not None
-    )
-    unused = photos.skipped | finder.reasons
-    unused |= {view.name: view.reason for view in views if not view.is_found}
-    return BoardCheckResult(check, verdict, len(views), unused)
+    return check_on_boards(lined, board, rig, laser), finder.reasons
 
 
 def check_in_scan(

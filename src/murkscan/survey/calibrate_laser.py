@@ -1,7 +1,7 @@
 """Calibrate lasers from photos of their lines on a board."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +10,7 @@ import numpy as np
 from ..calibrate.adjust.parameters import window_prior
 from ..calibrate.adjust.priors import join
 from ..calibrate.board.chessboard import Chessboard, Margin
+from ..calibrate.calibration import Calibration
 from ..calibrate.laser import calibrate_lasers
 from ..calibrate.state import tables_before
 from ..errors import InputError, MissingResult
@@ -19,7 +20,7 @@ from ..types.laser import Fan, Laser
 from ..types.rig import Rig
 from ..types.rig_covariance import RigCovariance
 from .board_stripes import StripeFinder
-from .calibrate import BoardSession, CalibrationResult
+from .calibrate import BoardSession, CalibrationResult, Fit, size_in
 from .progress import Progress, silent
 
 
@@ -74,33 +75,61 @@ def calibrate_laser_from_photos(
         Degenerate: The boards stood nearly in one place, or a parameter is not determined.
     """
     numbers = (laser,) if isinstance(laser, int) else tuple(laser)
-    step = ["laser", ",".join(map(str, numbers))]
-    tables = read_tables(rig_path) if rig_path.exists() else {}
-    tables = tables_before(tables, step, name=str(rig_path))
-    rig = _parse_calibrated(tables, rig_path, numbers)
-    fans = {} if fan is None else {n: _fan_of(rig, n, rig_path) for n in numbers}
+    plan = LaserPlan(numbers, margin, fan, index_sigma, extractor or GrayGravity())
+    tables, fit = plan.read(rig_path)
     folder = "laser_" + "_".join(map(str, numbers))
     session = BoardSession.open(path, board, rig_path, folder, tables=tables, progress=progress)
-    views = session.find_boards(size=rig.camera.size)
-    margin = margin or Margin(board.square, board.square, board.square, board.square)
-    finder = StripeFinder(session.photos, views, board, margin, rig, extractor or GrayGravity())
-    session.stripes = finder.find(numbers, progress)
-    session.unused |= finder.reasons
-    prior = None
-    for number, measured in fans.items():
-        assert fan is not None
-        prior = join(prior or RigCovariance(), _prior(Laser.from_sheet(measured), number, fan))
-    hints = "".join(f" {remark}" for remark in finder.remarks)
-    found = session.solve(
-        lambda: calibrate_lasers(
-            session.stripes, views, board, rig, numbers=numbers, fans=fans, prior=prior,
-            considered=_index(rig, index_sigma),
-        ),
-        hint=hints,
-    )  # fmt: skip
-    title = f"Laser {', '.join(map(str, numbers))}"
-    result = session.finish(found, step, title=title)
-    return replace(result, remarks=(*finder.remarks, *result.remarks))
+    session.find_boards(size=size_in(tables))
+    found = session.solve(fit)
+    return session.finish(found, plan.step, title=f"Laser {', '.join(map(str, numbers))}")
+
+
+@dataclass(frozen=True)
+class LaserPlan:
+    """Which lasers are calibrated, and by what; as `calibrate_laser_from_photos` takes it."""
+
+    numbers: tuple[int, ...] = (0,)
+    margin: Margin | None = None
+    fan: FanKnowledge | None = None
+    index_sigma: float = 2e-4
+    extractor: AbstractExtractor = field(default_factory=GrayGravity)
+
+    @property
+    def step(self) -> list[str]:
+        """Where in [calibration] the record goes."""
+        return ["laser", ",".join(map(str, self.numbers))]
+
+    def read(self, rig_path: Path) -> tuple[dict[str, Any], Fit]:
+        """Read the rig file as it was before this step, and say how the lasers are fitted.
+
+        Raises:
+            MissingResult: The camera has not been calibrated, or the laser is no fan there.
+            InputError: The number of a laser leaves a gap.
+            FormatError: The rig file is none.
+        """
+        tables = read_tables(rig_path) if rig_path.exists() else {}
+        tables = tables_before(tables, self.step, name=str(rig_path))
+        rig = _parse_calibrated(tables, rig_path, self.numbers)
+        fans = {} if self.fan is None else {n: _fan_of(rig, n, rig_path) for n in self.numbers}
+        return tables, lambda session: self._fit(session, rig, fans)
+
+    def _fit(self, session: BoardSession, rig: Rig, fans: Mapping[int, Fan]) -> Calibration:
+        square = session.board.square
+        finder = StripeFinder(
+            session.photos, session.views, session.board,
+            self.margin or Margin(square, square, square, square), rig, self.extractor,
+        )  # fmt: skip
+        session.stripes = finder.find(self.numbers, session.progress)
+        session.unused |= finder.reasons
+        session.remarks += finder.remarks
+        prior = None
+        for number, measured in fans.items():
+            own = _prior(Laser.from_sheet(measured), number, self.fan or FanKnowledge())
+            prior = join(prior or RigCovariance(), own)
+        return calibrate_lasers(
+            session.stripes, session.views, session.board, rig, numbers=self.numbers, fans=fans,
+            prior=prior, considered=_index(rig, self.index_sigma),
+        )  # fmt: skip
 
 
 def _parse_calibrated(tables: dict[str, Any], rig_path: Path, numbers: Sequence[int]) -> Rig:

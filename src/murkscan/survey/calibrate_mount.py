@@ -2,10 +2,12 @@
 
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ..calibrate.board.chessboard import Chessboard
+from ..calibrate.calibration import Calibration
 from ..calibrate.mount import MeasuredPlace, calibrate_mount
 from ..capture import open_recording
 from ..capture.folder import list_pictures
@@ -13,7 +15,7 @@ from ..errors import InputError, MissingResult
 from ..io.rig_toml import parse_rig, read_tables
 from ..types.rig import Rig
 from ..types.trajectory import Trajectory
-from .calibrate import BoardSession, CalibrationResult
+from .calibrate import BoardSession, CalibrationResult, Fit, size_in
 from .progress import Progress, silent
 
 
@@ -60,27 +62,10 @@ def calibrate_mount_from_photos(
         Degenerate: The vehicle turned too little to tell the mount from.
     """
     clock = clock or PhotoClock()
-    tables = read_tables(rig_path)
-    if "camera" not in tables:
-        raise MissingResult(
-            f"{rig_path} has no camera yet; run `murkscan calibrate camera` first with the same "
-            "--rig."
-        )
-    rig = parse_rig(tables, name=str(rig_path))
+    tables, fit = plan_mount(rig_path, path, log, clock, measured)
     session = BoardSession.open(path, board, rig_path, "mount", tables=tables, progress=progress)
-    times = _read_times(path, rig, clock)
-    views = session.find_boards(size=rig.camera.size)
-    timed = [view for view in views if view.name in times]
-    session.unused |= {view.name: "has no time" for view in views if view.name not in times}
-    session.unused |= {
-        view.name: "shows a board that the picture cuts off, so that it is not known which corners"
-        for view in timed
-        if not view.is_placed
-    }
-    moments = np.array([times[view.name] for view in timed])
-    found = session.solve(
-        lambda: calibrate_mount(timed, moments, log, board, rig, measured=measured)
-    )
+    session.find_boards(size=size_in(tables))
+    found = session.solve(fit)
     result = session.finish(found, ["mount"], title="Mount")
     stand = found.adjustment.stand
     if found.clock_sigma is None or stand is None:
@@ -92,6 +77,44 @@ def calibrate_mount_from_photos(
             f"times, so scan with --time-offset-s {offset:.4f}."
         )
     return replace(result, remarks=(remark, *result.remarks))
+
+
+def plan_mount(
+    rig_path: Path,
+    path: Path,
+    log: Trajectory,
+    clock: PhotoClock,
+    measured: MeasuredPlace | None = None,
+) -> tuple[dict[str, Any], Fit]:
+    """Read the rig file and the photos' times, and say how the mount is fitted.
+
+    Raises:
+        MissingResult: The camera has not been calibrated.
+        InputError: The photos have no times.
+        FormatError: The rig file is none.
+    """
+    tables = read_tables(rig_path)
+    if "camera" not in tables:
+        raise MissingResult(
+            f"{rig_path} has no camera yet; run `murkscan calibrate camera` first with the same "
+            "--rig."
+        )
+    rig = parse_rig(tables, name=str(rig_path))
+    times = _read_times(path, rig, clock)
+
+    def fit(session: BoardSession) -> Calibration:
+        timed = [view for view in session.views if view.name in times]
+        session.unused |= {v.name: "has no time" for v in session.views if v.name not in times}
+        session.unused |= {
+            view.name: "shows a board that the picture cuts off, so that it is not known which "
+            "corners"
+            for view in timed
+            if not view.is_placed
+        }
+        moments = np.array([times[view.name] for view in timed])
+        return calibrate_mount(timed, moments, log, session.board, rig, measured=measured)
+
+    return tables, fit
 
 
 def _read_times(path: Path, rig: Rig, clock: PhotoClock) -> dict[str, float]:

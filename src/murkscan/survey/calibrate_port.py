@@ -2,12 +2,12 @@
 
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ..calibrate.adjust.parameters import INTRINSICS
 from ..calibrate.board.chessboard import Chessboard
-from ..calibrate.board.view import BoardView
 from ..calibrate.calibration import Calibration
 from ..calibrate.port import calibrate_port
 from ..calibrate.state import tables_before
@@ -16,7 +16,7 @@ from ..io.rig_toml import parse_rig, read_tables
 from ..types.port import FlatPort
 from ..types.rig import Rig
 from ..types.rig_covariance import RigCovariance
-from .calibrate import BoardSession, CalibrationResult
+from .calibrate import BoardSession, CalibrationResult, Fit, size_in
 from .progress import Progress, silent
 
 _LEAST, _MOST = 5e-4, 0.5
@@ -76,19 +76,29 @@ def calibrate_port_from_photos(
         Degenerate: The photos do not determine every parameter.
     """
     knowledge = knowledge or PortKnowledge()
-    tables = tables_before(read_tables(rig_path), ["port"], name=str(rig_path))
-    rig = _with_port(parse_rig(tables, name=str(rig_path)), rig_path, knowledge)
+    tables, fit = plan_port(rig_path, knowledge)
     session = BoardSession.open(path, board, rig_path, "port", tables=tables, progress=progress)
-    views = session.find_boards(size=rig.camera.size)
-    found = session.solve(lambda: _fit(views, board, rig, knowledge))
+    session.find_boards(size=size_in(tables))
+    found = session.solve(fit)
     return session.finish(
         found, ["port"], title="Camera port", keep_water=not knowledge.is_index_free
     )
 
 
-def _fit(
-    views: list[BoardView], board: Chessboard, rig: Rig, knowledge: PortKnowledge
-) -> Calibration:
+def plan_port(rig_path: Path, knowledge: PortKnowledge) -> tuple[dict[str, Any], Fit]:
+    """Read the rig file as it was before this step, and say how the port is fitted.
+
+    Raises:
+        MissingResult: The rig has no camera, or no port.
+        InputError: The port's distance cannot be.
+        FormatError: The rig file is none.
+    """
+    tables = tables_before(read_tables(rig_path), ["port"], name=str(rig_path))
+    rig = _with_port(parse_rig(tables, name=str(rig_path)), rig_path, knowledge)
+    return tables, lambda session: _fit(session, rig, knowledge)
+
+
+def _fit(session: BoardSession, rig: Rig, knowledge: PortKnowledge) -> Calibration:
     distance = knowledge.distance
     free = (
         *(INTRINSICS if knowledge.is_camera_free else ()),
@@ -99,7 +109,7 @@ def _fit(
     if distance is not None:
         prior = RigCovariance(("camera.port.distance",), np.array([[distance.sigma**2]]))
     return calibrate_port(
-        views, board, rig, free=free, prior=prior,
+        session.views, session.board, rig, free=free, prior=prior,
         considered=None if knowledge.is_index_free else index,
     )  # fmt: skip
 

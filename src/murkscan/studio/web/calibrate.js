@@ -55,14 +55,14 @@ export function calibratePage(page, [named]) {
   let isGone = false, timer = 0, asked = 0;
   async function look() {
     clearTimeout(timer);
-    const { wide, high, count, [photos]: folder, rig } = form.read();
+    const { wide, high, count, [photos]: folder, ...given } = form.read(), { rig } = given;
     if (isGone) return;
     const mine = ++asked;
     if (folder) {
       try {
-        const seen = await ask(question("api/boards", { folder, board: `${wide}x${high}` }));
+        const seen = await ask(question("api/boards", { ...given, step, folder, board: `${wide}x${high}` }));
         if (mine !== asked || isGone) return;
-        keep(missing, [seen.so_far, seen.count, seen.photos.length, count], () => missingOf(seen, Number(count), step));
+        keep(missing, [seen.so_far, seen.fault, seen.count, seen.photos.length, count], () => missingOf(seen, Number(count), step));
         keep(gallery, seen.photos, () => seen.photos.map(photo));
       } catch (error) {
         keep(missing, error.message, () => note(error.message, "warning"));
@@ -100,7 +100,7 @@ export function calibratePage(page, [named]) {
   return () => { isGone = true; clearTimeout(timer); stop(); sight.end(); };
 }
 
-function missingOf({ is_folder: isFolder, so_far: told, count, photos }, wanted, step) {
+function missingOf({ is_folder: isFolder, so_far: told, fault, count, photos }, wanted, step) {
   const title = make("h2", {}, "What the photographs tell so far");
   if (!isFolder) return [title, note("A video: about a hundred of its pictures are looked at when it is calibrated on.")];
   const looked = photos.length, found = photos.filter((one) => !one.reason).length;
@@ -108,16 +108,19 @@ function missingOf({ is_folder: isFolder, so_far: told, count, photos }, wanted,
     bar("boards found", found, Math.max(wanted, 1), `${found} of ${wanted}`),
     looked < count ? bar("photographs looked at", looked, count, `${looked} of ${count}`) : null,
   ];
+  if (fault) return [title, ...bars, note(fault, "warning")];
+  if (!told && found) return [title, ...bars, note("Working out what they tell …")];
   if (!told) return [title, ...bars, note(looked < count ? "Looking for the board …" : "The board is in none of them: count its inner corners, where black squares touch.", looked < count ? "" : "warning")];
-  if (step !== "camera") {
-    return [title, ...bars, make("div", { className: "so-far" }, map(told.cells), note(`Corners were in ${(100 * told.share).toFixed(0)} % of the picture.`))];
-  }
-  const focal = told.focal_sigma === null ? null
-    : bar("focal length", Math.max(0, 3 + Math.log10(0.03 / told.focal_sigma)), 4.5, `± ${(100 * told.focal_sigma).toPrecision(2)} % (1σ)`);
-  return [title, ...bars, focal, make("div", { className: "so-far" }, map(told.cells), make("div", { className: "form" },
+  const judged = told.precisions.filter((one) => one.share !== null), others = told.precisions.filter((one) => one.share === null);
+  return [title, ...bars, ...judged.map(precision),
+    others.length ? note(`Known by now (1σ): ${others.map((one) => `${one.what} ± ${one.said}`).join("; ")}.`, "muted") : null,
+    make("div", { className: "so-far" }, map(told.cells), make("div", { className: "form" },
     note(told.verdict, told.is_good ? "good" : "warning"),
-    told.missing.length ? make("div", {}, make("h3", { textContent: "Still to show" }), make("ul", { className: "todo" }, told.missing.map((text) => make("li", { textContent: text })))) : note("Nothing is missing.", "good")))];
+    step === "check" ? null : told.missing.length ? make("div", {}, make("h3", { textContent: "Still to show" }), make("ul", { className: "todo" }, told.missing.map((text) => make("li", { textContent: text })))) : note("Nothing is missing.", "good")))];
 }
+
+// Half full is good enough; each half is a factor of ten.
+const precision = ({ what, said, share }) => bar(what, Math.max(0, 1 - Math.log10(share)), 2, `± ${said} (1σ${share <= 1 ? ", good" : ""})`);
 
 const bar = (name, value, max, text) => make("div", { className: "progress named" }, make("b", { textContent: name }), make("progress", { max, value: Math.min(value, max) }), make("span", { textContent: text }));
 

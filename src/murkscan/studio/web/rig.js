@@ -61,13 +61,13 @@ function describe(rig) {
 export function card(step) {
   const [kind] = step.step.split(" ");
   const isOptional = kind === "port" || kind === "mount";
-  const word = step.is_calibrated ? (step.is_good ? "good" : "usable") : step.is_there ? "as written" : isOptional ? "none" : "missing";
-  const tone = step.is_calibrated ? (step.is_good ? "good" : "warning") : step.is_there || isOptional ? "plain" : "warning";
+  const word = step.is_calibrated ? (step.is_good ? "good" : step.is_usable ? "usable" : "not usable") : step.is_there ? "as written" : isOptional ? "none" : "missing";
+  const tone = step.is_calibrated ? (step.is_good ? "good" : step.is_usable ? "warning" : "bad") : step.is_there || isOptional ? "plain" : "warning";
   const unused = Object.entries(step.unused);
   return make("section", { className: "card" },
     make("h2", {}, step.step[0].toUpperCase() + step.step.slice(1), make("span", { className: `badge ${tone}`, textContent: word })),
     step.is_calibrated
-      ? [note(step.verdict, step.is_good ? "good" : "warning"),
+      ? [note(step.verdict, tone),
         make("p", { className: "muted", textContent: `${step.date}: ${step.views} of ${step.photos} photographs used, board ${step.board}; corners off by ${step.rms_px} px` }),
         step.errors.length ? table(["what", "at", "known to, 1σ"], step.errors.map((e) => [e.what, `${e.distance_mm.toFixed(0)} mm`, `± ${e.sigma_mm.toPrecision(2)} mm`])) : null,
         unused.length ? make("details", {}, make("summary", { textContent: `${unused.length} photographs not used, and why` }), table(["photograph", "reason"], unused)) : null]
