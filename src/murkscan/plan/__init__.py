@@ -9,5 +9,6 @@ from .forecast import Forecast as Forecast
 from .forecast import forecast as forecast
 from .placement import Placement as Placement
 from .placement import as_if as as_if
+from .placement import judge_present as judge_present
 from .placement import place_laser as place_laser
 from .placement import present_place as present_place

@@ -19,7 +19,7 @@ _SHORTEST = 0.05
 _CROSSINGS = 5
 """Distances, spread over the working range, at which the sheet is let cross the camera's axis."""
 _NUM_LINES, _NUM_DEPTHS = 3, 9
-_COVERED = 0.95
+COVERED = 0.95
 """Share of points found from which more is not asked for: then σ decides."""
 
 
@@ -72,11 +72,11 @@ def place_laser(
         raise InputError(f"The longest baseline must be 50 mm or more, got {longest * 1e3:g} mm.")
     depths = np.linspace(near, far, _NUM_DEPTHS)
     tried = [
-        _judge(candidate, conditions, depths, laser, place)
-        for candidate, place in [
-            (rig, present_place(rig, laser)),
-            *_candidates(rig, near, far, longest, laser),
-        ]
+        judge_present(rig, conditions, near=near, far=far, laser=laser),
+        *(
+            _judge(candidate, conditions, depths, laser, place)
+            for candidate, place in _candidates(rig, near, far, longest, laser)
+        ),
     ]
     seen = [one for one in tried if one.share_found > 0]
     if not seen:
@@ -84,8 +84,16 @@ def place_laser(
             f"From no place would this rig see a surface {near:g} to {far:g} m away in this water: "
             "go nearer, or give the laser more power."
         )
-    enough = min(_COVERED, max(one.share_found for one in seen))
+    enough = min(COVERED, max(one.share_found for one in seen))
     return min((one for one in seen if one.share_found >= enough), key=lambda one: one.sigma)
+
+
+def judge_present(
+    rig: Rig, conditions: Conditions, *, near: float, far: float, laser: int = 0
+) -> Placement:
+    """Say what a laser shows from where it is, as `place_laser` judges it; the same arguments."""
+    depths = np.linspace(near, far, _NUM_DEPTHS)
+    return _judge(rig, conditions, depths, laser, present_place(rig, laser))
 
 
 def present_place(rig: Rig, laser: int = 0) -> tuple[float, float]:

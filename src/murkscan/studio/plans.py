@@ -21,10 +21,12 @@ from ..plan import (
     attenuation_from_secchi,
     attenuation_from_visibility,
     forecast,
+    judge_present,
     place_laser,
     present_place,
     visibility_from_attenuation,
 )
+from ..survey.plan import tell_placement
 from ..types.rig import Rig
 from .sandbox import Sandbox
 
@@ -76,7 +78,9 @@ def tell_best(sandbox: Sandbox, given: Mapping[str, str]) -> dict[str, Any]:
     near, far = _forecast(rig, conditions, laser).reach
     longest = numbers.get("longest-baseline-mm", 2e3 * present_place(rig, laser)[0]) / 1e3
     best = place_laser(rig, conditions, near=near, far=far, longest=longest, laser=laser)
+    now = judge_present(rig, conditions, near=near, far=far, laser=laser)
     return {
+        "sentence": tell_placement(now, best, (near, far)),
         "near_m": near,
         "far_m": far,
         "longest_mm": longest * 1e3,

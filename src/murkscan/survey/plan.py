@@ -20,7 +20,7 @@ from ..plan import (
     visibility_from_attenuation,
 )
 from ..plan.charts import bound_chart, sigma_chart
-from ..plan.placement import present_place
+from ..plan.placement import COVERED, judge_present, present_place
 from ..types.rig import Rig
 
 _NUM_ROWS = 8
@@ -77,6 +77,7 @@ def make_plan(
     shown = forecast(rig, conditions, depths=depths, laser=laser)
     now, _ = present_place(rig, laser)
     best = _place(rig, conditions, (near, far), longest or 2 * now, laser)
+    present = judge_present(rig, conditions, near=near, far=far, laser=laser) if best else None
     speed = spacing * frame_rate
     sentences = [
         f"It sees from {nearest:.2f} to {farthest:.2f} m: there half of the points or more are "
@@ -85,7 +86,7 @@ def make_plan(
         f"Profiles {spacing * 1e3:g} mm apart at {frame_rate:g} frames a second: go no faster than "
         f"{speed * 1e3:.0f} mm/s. While a frame is exposed that is "
         f"{speed * conditions.sensor.exposure * 1e3:.2g} mm.",
-        _tell(best, shown, (near, far)),
+        tell_placement(present, best, (near, far)),
     ]
     made = Plan(whole, _HEAD, _rows(shown), sentences, _numbers(whole, shown, best, speed))
     save_json(out / "plan.json", made.numbers)
@@ -102,23 +103,37 @@ def _place(
         return None
 
 
-def _tell(best: Placement | None, shown: Forecast, span: tuple[float, float]) -> str:
-    if best is None:
+def tell_placement(now: Placement | None, best: Placement | None, span: tuple[float, float]) -> str:
+    """Say what a laser shows of a range from where it is, and from where it would better sit.
+
+    Args:
+        now: From where it is.
+        best: From the best place; None where no place shows anything.
+        span: The nearest and the farthest distance [m].
+    """
+    if now is None or best is None:
         return "No other place of the laser shows more of this range."
-    share = float((shown.share_found * shown.share_in_view).mean())
-    total = np.hypot(shown.sigma_along, shown.sigma_speckle)
-    sigma = float(np.nanmax(shown.median(total), initial=0.0))
-    if best.share_found <= share and best.sigma >= 0.97 * sigma:
-        return (
-            f"Between {span[0]:.2f} and {span[1]:.2f} m it shows {share:.0%} of the points with σ "
-            f"up to {sigma * 1e3:.2g} mm; no other place of the laser that was tried does better."
-        )
-    return (
-        f"Between {span[0]:.2f} and {span[1]:.2f} m the laser as it is shows {share:.0%} of the "
-        f"points with σ up to {sigma * 1e3:.2g} mm; best placed, with a baseline of "
-        f"{best.baseline * 1e3:.0f} mm at an angle of {math.degrees(best.angle):.1f}°, "
-        f"{best.share_found:.0%} with σ up to {best.sigma * 1e3:.2g} mm."
+    here = (
+        f"Between {span[0]:.2f} and {span[1]:.2f} m the laser as it is shows "
+        f"{_per_cent(now.share_found)} of the points, with σ up to {now.sigma * 1e3:.2g} mm"
     )
+    rule = f"{COVERED:.0%}" if best.share_found >= COVERED else "as many as any place does"
+    is_enough = now.share_found >= min(COVERED, best.share_found)
+    if is_enough and best.sigma >= 0.97 * now.sigma:
+        return f"{here}; no other place that was tried and shows {rule} has a smaller σ."
+    there = (
+        f"a baseline of {best.baseline * 1e3:.0f} mm at an angle of "
+        f"{math.degrees(best.angle):.1f}° shows {_per_cent(best.share_found)} with σ up to "
+        f"{best.sigma * 1e3:.2g} mm, the smallest σ of places that show {rule}"
+    )
+    if is_enough:
+        return f"{here}; {there}."
+    return f"{here}. More points come first: {there}, even where that is more than now."
+
+
+def _per_cent(share: float) -> str:
+    """Write a share, rounded down, so that what misses a bound never looks as if it met it."""
+    return f"{math.floor(1e3 * share + 1e-6) / 10:g} %"
 
 
 def _rows(shown: Forecast) -> list[tuple[str, ...]]:

@@ -94,8 +94,7 @@ export function planPage(page) {
   }
   function wordsOf(best) {
     const [baseline, angle] = [best.baseline_mm.toFixed(0), best.angle_deg.toFixed(1)];
-    return [note(`From ${best.near_m.toFixed(2)} to ${best.far_m.toFixed(2)} m a laser ${baseline} mm from the camera at ${angle}° is best, of those up to ${best.longest_mm.toFixed(0)} mm: `
-      + `${(100 * best.share_found).toFixed(0)} % of the points are found, with σ along the ray up to ${best.sigma_mm.toPrecision(2)} mm.`, "good"),
+    return [note(`${best.sentence} Baselines up to ${best.longest_mm.toFixed(0)} mm were tried; σ is that along the ray.`, "good"),
     make("div", { className: "row" }, button("Try it", () => { places[0].set(baseline); places[1].set(angle); changed(); }))];
   }
 
