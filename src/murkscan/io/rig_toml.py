@@ -132,7 +132,7 @@ def put_tables(path: Path, top: Mapping[str, Any], tables: Mapping[str, Any]) ->
         document[key] = value
     camera = dict(tables.get("camera", {}))
     if "port" in camera and "camera" in document:
-        document["camera"].pop("port", None)  # type: ignore[union-attr]
+        document["camera"].pop("port", None)
     _update(document.setdefault("camera", tomlkit.table()), camera)
     if "laser" in tables:
         _put_laser(document, tables["laser"], 0, path)
