@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from starlette.datastructures import Headers, MutableHeaders
+from starlette.exceptions import HTTPException
 from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
@@ -67,7 +68,7 @@ class Guard:
             return _say(403, "Only the studio's own page may ask for this.")
         length = headers.get("content-length", "0")
         if not length.isdigit() or int(length) > self._limit(scope):
-            return _say(413, f"That is larger than {self._limit(scope):,} bytes, the most allowed.")
+            return _say(413, _too_large(self._limit(scope)))
         if self.open >= _AT_ONCE:
             return _say(503, "Too many questions at once; the page asks again by itself.")
         return None
@@ -77,19 +78,25 @@ class Guard:
         return self.largest_upload if is_upload else _LARGEST
 
 
+def _too_large(limit: int) -> str:
+    return f"That is larger than {limit:,} bytes, the most allowed."
+
+
 def _say(status: int, sentence: str) -> PlainTextResponse:
     return PlainTextResponse(sentence, status, {"X-Content-Type-Options": "nosniff"})
 
 
 def _counted(receive: Receive, limit: int) -> Receive:
-    """Count what comes, since a length need not be said; what is too much ends the question."""
+    """Count what comes, since a length need not be said; what is too much is refused."""
     got = 0
 
     async def counted() -> Message:
         nonlocal got
         message = await receive()
         got += len(message.get("body", b""))
-        return {"type": "http.disconnect"} if got > limit else message
+        if got > limit:
+            raise HTTPException(413, _too_large(limit))
+        return message
 
     return counted
 

@@ -8,17 +8,21 @@ export function gapMap() {
   const canvas = make("canvas", { className: "gaps" });
   const said = make("figcaption", {});
   const element = make("figure", { className: "tile" }, said, make("div", { className: "held" }, canvas));
+  let asked = 0;  // a map that is still read when another is asked for is not drawn
   clear();
 
   function clear() {
+    asked += 1;
     canvas.width = canvas.height = 0;
     said.textContent = "Gaps: the map comes with the first metres.";
   }
 
   async function show(address, about) {
+    const mine = ++asked;
     const image = new Image();
     image.src = address;
     await image.decode();
+    if (mine !== asked) return;
     const [width, height] = [image.naturalWidth, image.naturalHeight];
     Object.assign(canvas, { width, height });
     const context = canvas.getContext("2d", { willReadFrequently: true });

@@ -4,11 +4,16 @@ import { listen, order, refresh } from "./ask.js";
 import { button, keep, make } from "./dom.js";
 
 const WORDS = { running: "at work", done: "done", refused: "not done", stopped: "stopped", failed: "failed" };
-let closed = "";
+const pageOf = (address) => new URL(address, location.href).hash.slice(1).split("/")[0];
+let closed = "", newest = null;
 
 export function showJobs(element) {
+  // What is done was seen; on another page it would only take room.
+  addEventListener("hashchange", ({ oldURL, newURL }) => {
+    if (newest?.state === "done" && pageOf(oldURL) !== pageOf(newURL)) { closed = newest.name; element.hidden = true; }
+  });
   listen(({ jobs }) => {
-    const job = jobs[0];
+    const job = newest = jobs[0];
     const isShown = job && (job.state === "running" || job.name !== closed) && isRecent(job);
     element.hidden = !isShown;
     if (isShown) keep(element, job, () => describe(job));
