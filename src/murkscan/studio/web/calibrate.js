@@ -116,7 +116,7 @@ function missingOf({ is_folder: isFolder, so_far: told, fault, count, photos }, 
     others.length ? note(`Known by now (1σ): ${others.map((one) => `${one.what} ± ${one.said}`).join("; ")}.`, "muted") : null,
     make("div", { className: "so-far" }, map(told.cells), make("div", { className: "form" },
     note(told.verdict, told.is_good ? "good" : "warning"),
-    step === "check" ? null : told.missing.length ? make("div", {}, make("h3", { textContent: "Still to show" }), make("ul", { className: "todo" }, told.missing.map((text) => make("li", { textContent: text })))) : note("Nothing is missing.", "good")))];
+    step === "check" ? null : told.missing.length ? make("div", {}, make("h3", { textContent: "Still to show" }), make("ul", { className: "todo" }, told.missing.map((text) => make("li", { textContent: text })))) : told.precisions.length ? note("Nothing is missing.", "good") : null))];
 }
 
 // Half full is good enough; each half is a factor of ten.
