@@ -64,7 +64,9 @@ class BoardFolder:
                 )
                 self._worker.start()
             known = [self._known[name] for name in names if name in self._known]
-            return known, len(names), self._judged[1]
+            # What was judged for another step, or another square, says nothing of this one.
+            is_same = self._judged[0].startswith(repr((board, step)))
+            return known, len(names), self._judged[1] if is_same else ""
 
     def _work(self, names: Sequence[str], board: Chessboard, step: AbstractStep) -> None:
         for name in names:
@@ -81,7 +83,7 @@ class BoardFolder:
 
     def _judge(self, seen: Sequence[LookedAt], board: Chessboard, step: AbstractStep) -> None:
         names = tuple((one.view.name, one.stamp) for one in seen)
-        key = repr((names, board, step, step.changed()))
+        key = repr((board, step)) + repr((names, step.changed()))
         sizes = Counter(one.size for one in seen if one.view.is_found)
         if key == self._judged[0] or not sizes:
             return
