@@ -300,9 +300,10 @@ of a way, and on one side only at its ends. What limits places: motion that repe
 time from one sheet to the other, some 2.5 s, which both see alike. Errors drawn from what is stated
 come to 0.15 mm across the surface and 0.4 mm in place with log a, 0.19 and 0.77 mm with log b: bars
 of one pass are beyond what its log and its ties tell. With log c the ends of one pass, which one
-sheet sees, may pitch about its line: 5 mm across the surface, as stated. The record of `cave` (seed 1
-of real motion) jumps, by up to 7 m/s²: relief does not lie on its like for 5 s, by which a scan tells
-that a correction is not sound, and keeps its log. So it does with seams and anodes, of all seeds.
+sheet sees, may pitch about its line: 5 mm across the surface, as stated. The record of `cave` (seed
+1 of real motion) jumps, by up to 7 m/s²: relief does not lie on its like for 5 s, by which a scan
+tells that a correction is not sound, and keeps its log. So it does with seams and anodes, of all
+seeds.
 
 The page holds the cases and seeds that were run to the end, and no others; *worst of N* says how
 many seeds. *Error / σ* is that of a pass's length over what `Trajectory.errors` states: 1 would be
