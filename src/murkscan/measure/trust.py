@@ -14,10 +14,10 @@ from ..geometry.stripe_blur import expect_blur, loss_moves, sheet_moves
 from ..types.quantity import Quantity
 from .sample import Sample
 
-_BLUR_MODEL = 0.2
+_BLUR_MODEL = 0.35
 """Share of the blur's effect that its formula leaves open at each part of a stripe: root mean
-square over two simulated pipes, in water of c = 0.3 and 1.5 /m, by Murk; in murk the middle is off
-by 40 %, where the water's skirt adds to the lens (tests/measure/test_blur_model.py)."""
+square over two simulated pipes, in water of c = 0.3 and 1.5 /m, by Murk, most of it at their flanks
+and where the water's skirt adds to the lens (tests/measure/test_blur_model.py)."""
 _PART = 0.4
 """Size of a part over which it is off alike: change of the sine of the angle between normal and
 stripe. The middle of those pipes is off alike up to 0.2 and more on both sides."""
