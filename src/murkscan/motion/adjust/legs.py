@@ -99,8 +99,7 @@ class Facets:
     count: Scalars
     """Points of the cell itself."""
     bright: Scalars
-    bright_slope: Directions
-    """How the brightness changes with place, in the world [1/m]."""
+    """Mean brightness there."""
 
     def __len__(self) -> int:
         """Count the facets."""
@@ -236,7 +235,6 @@ def make_facets(leg: Leg, path: Path) -> Facets:
         planes[:, 5],
         sums[good, 0],
         middle[good, 3],
-        np.einsum("nk,nki->ni", planes[:, 7:9], axes),
     )
 
 
