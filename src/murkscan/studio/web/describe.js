@@ -27,5 +27,7 @@ export function describeCard() {
   form.also = ({ kind, far }) => (kind ? { [kind]: far } : {});
   const element = make("section", { className: "card wide" }, make("h2", { textContent: "A rig by what is known of it" }),
     note("What a data sheet, a ruler and a thermometer say is enough to plan with, and for a window’s calibration to begin from. Leave empty what is not known; what was calibrated stays."), form);
-  return { element, name: (rig) => { if (rig) form.set("rig", rig); } };
+  // What somebody typed stays, whatever the folder shows meanwhile.
+  let given = form.input("rig").value;
+  return { element, name: (rig) => { if (rig && form.input("rig").value === given) form.set("rig", given = rig); } };
 }
