@@ -1,14 +1,13 @@
 """Write a simulated recording, its rig, its poses and its truth."""
 
-from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
+from ..distribute import Threads
 from ..errors import InputError
 from ..io.images import write_image
 from ..io.mesh_files import save_mesh
@@ -38,10 +37,6 @@ from ..types.trajectory import Trajectory
 from .progress import Progress, silent
 from .stage_runner import run_stage
 
-_WORKERS = 2
-"""Frames that are drawn at once: drawing waits for its own Python half of the time."""
-_AHEAD = 4
-"""Frames that may be ready before they are written: memory stays bounded."""
 _FASTEST = 500.0
 """Pictures a second that a video's times can tell apart."""
 _PART = 64
@@ -101,7 +96,9 @@ def simulate_recording(
     simulator = None if stage.result() is not None else Simulator.of(scene)
 
     def make(_: None) -> SimulateResult:
-        return _write(simulator or Simulator.of(scene), StageFiles(out), text, progress)
+        ready = simulator or Simulator.of(scene)
+        with closing(Threads().map(ready.draw_frame, range(len(scene)))) as drawn:
+            return _write(scene, drawn, StageFiles(out), text, progress)
 
     project = Project(out, stage.command)
     made = run_stage(project, stage, make, prepare=lambda: None, progress=progress)
@@ -109,9 +106,13 @@ def simulate_recording(
 
 
 def _write(
-    simulator: Simulator, files: StageFiles, text: str | None, progress: Progress
+    scene: Scene,
+    drawn: Iterator[SimulatedFrame],
+    files: StageFiles,
+    text: str | None,
+    progress: Progress,
 ) -> SimulateResult:
-    scene, centres = simulator.scene, 0
+    centres = 0
     _write_rig_and_trajectory(scene, files)
     with (
         _keeping(scene, files) as (recording, keep),
@@ -119,19 +120,19 @@ def _write(
         writing_true_stripes(path) as tell,
     ):
         stripes, fields, kept = [], [], None
-        for frame in _draw_ahead(simulator):
-            fields.append(frame.frame.image)
+        for one in drawn:
+            fields.append(one.frame.image)
             if len(fields) == scene.row_step:
-                first = frame.frame.index + 1 - scene.row_step
+                first = one.frame.index + 1 - scene.row_step
                 kept = scene.recorder.smooth(_weave(scene, fields), kept, scene.sensor.white)
                 keep(kept, float(scene.times[first]))
                 fields.clear()
-            stripes.append(frame.stripe)
-            centres += len(frame.stripe)
-            if len(stripes) == _PART or frame.frame.index + 1 == len(scene):
-                tell(frame.stripe.concatenate(stripes))
+            stripes.append(one.stripe)
+            centres += len(one.stripe)
+            if len(stripes) == _PART or one.frame.index + 1 == len(scene):
+                tell(one.stripe.concatenate(stripes))
                 stripes.clear()
-            progress("simulate", frame.frame.index + 1, len(scene))
+            progress("simulate", one.frame.index + 1, len(scene))
     if scene.bodies:
         with files.making("truth/mesh.ply") as path:
             save_mesh(path, scene.surroundings.mesh)
@@ -149,22 +150,6 @@ def _require_ours(out: Path) -> None:
             f"{others[0] if others else out} is not of a simulation; give a new folder for the "
             "recording."
         )
-
-
-def _draw_ahead(simulator: Simulator) -> Iterator[SimulatedFrame]:
-    """Draw the frames on several threads, and give them in order."""
-    waiting: deque[Future[SimulatedFrame]] = deque()
-    with ThreadPoolExecutor(_WORKERS) as pool:
-        try:
-            for number in range(len(simulator.scene)):
-                waiting.append(pool.submit(simulator.draw_frame, number))
-                if len(waiting) > _AHEAD:
-                    yield waiting.popleft().result()
-            while waiting:
-                yield waiting.popleft().result()
-        finally:
-            for future in waiting:
-                future.cancel()
 
 
 def _write_rig_and_trajectory(scene: Scene, files: StageFiles) -> None:
