@@ -15,6 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
+from .._kernels.cells import find_in_cells
 from ..errors import InputError
 from ..types.arrays import Indices, Mask, Scalars
 from ..types.cloud import PointCloud
@@ -134,25 +135,9 @@ class ScanGrid:
             For each point that asks the number of its neighbour; NONE where the cell is empty.
         """
         asking = np.arange(len(self.cloud)) if of is None else of
-        if asking.size == 0:
-            return asking
         cell, cells, order = self._cells
         wanted = cell[asking] + profiles * self._width + lines
-        slot = np.searchsorted(cells, wanted)
-        best = np.full(len(asking), NONE)
-        shortest = np.full(len(asking), np.inf)
-        for _ in range(_MAX_BRANCHES):
-            there = np.flatnonzero(cells[np.minimum(slot, len(cells) - 1)] == wanted)
-            there = there[slot[there] < len(cells)]
-            if there.size == 0:
-                break
-            candidate = order[slot[there]]
-            length = self.distance(asking[there], candidate)
-            closer = length < shortest[there]
-            best[there[closer]] = candidate[closer]
-            shortest[there[closer]] = length[closer]
-            slot[there] += 1
-        return best
+        return find_in_cells(self.cloud.points, asking, wanted, cells, order, _MAX_BRANCHES)
 
     def distance(self, ours: Indices, theirs: Indices) -> Scalars:
         """Measure from points to points [m]."""
