@@ -7,6 +7,7 @@ import numpy as np
 from .._kernels.closest import bound_nodes, find_nearest, sort_triangles
 from ..types.arrays import Directions, Faces, Indices, Mask, Points, Scalars
 from ..types.mesh import Mesh
+from .row_keys import row_keys
 
 _BLOCK = 500_000
 """Points whose places are looked at together: memory stays bounded."""
@@ -86,7 +87,7 @@ def open_sides(faces: Faces) -> np.ndarray:
     Sides are counted in both directions, so that a closed and a wrongly turned surface have none.
     """
     sides = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2), axis=2).reshape(-1, 2)
-    _, number, count = np.unique(sides, axis=0, return_inverse=True, return_counts=True)
+    _, number, count = np.unique(row_keys(sides), return_inverse=True, return_counts=True)
     return (count[number] == 1).reshape(faces.shape)
 
 

@@ -11,6 +11,7 @@ from scipy.special import ndtri
 from ..errors import NotEnoughData
 from ..geometry.correlated_errors import variance_of_sum
 from ..geometry.height_map import MapFrame
+from ..geometry.row_keys import row_keys
 from ..geometry.spline_surface import fit_spline_surface
 from ..types.arrays import Indices, Points, Scalars, Vector
 
@@ -106,8 +107,8 @@ def _surfaces(points: Points, up: Vector) -> Iterator[HeightErrors]:
             )
         except NotEnoughData:
             return
-        squares = located[:, :2] // (max(extent) / pieces)
-        number = np.unique(squares, axis=0, return_inverse=True)[1].ravel()
+        squares = (located[:, :2] // (max(extent) / pieces)).astype(int)
+        number = np.unique(row_keys(squares), return_inverse=True)[1]
         yield HeightErrors(located[:, 2] - surface.heights(located[:, :2]), number)
 
 

@@ -7,6 +7,7 @@ from jaxtyping import Float, Int
 from scipy.spatial import KDTree
 
 from ..errors import NotEnoughData
+from ..geometry.row_keys import row_keys
 from ..types.arrays import Faces, Indices, Scalars, Vector
 from ..types.measurement import Measurement
 from ..types.mesh import Mesh
@@ -133,8 +134,8 @@ def _crossings(
     sides = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2)
     crossed = above[sides[..., 0]] != above[sides[..., 1]]
     pairs = np.sort(sides[crossed], axis=1)
-    unique, number = np.unique(pairs, axis=0, return_inverse=True)
-    a, b = unique.T
+    _, first, number = np.unique(row_keys(pairs), return_index=True, return_inverse=True)
+    a, b = pairs[first].T
     share = heights[a] / (heights[a] - heights[b])
     places = mesh.vertices[a] + share[:, None] * (mesh.vertices[b] - mesh.vertices[a])
     return number.reshape(-1, 2), places

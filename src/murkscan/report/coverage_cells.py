@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Int
 
+from ..geometry.row_keys import row_keys
 from ..types.arrays import Indices, Scalars
 from .strips import Strips
 from .swath import CAUSES
@@ -78,13 +79,12 @@ def choose_fullest(sheets: Sequence[Sequence[CellSums]]) -> Sequence[CellSums]:
     whole = [add_up(parts) for parts in sheets]
     cells = np.concatenate([one.cell for one in whole])
     areas = np.concatenate([one.areas for one in whole])
-    places, which = np.unique(cells, axis=0, return_inverse=True)
-    which = which.ravel()
+    _, first, which = np.unique(row_keys(cells), return_index=True, return_inverse=True)
     # The last of a cell's entries, in order of what they cover, then of what they know.
     order = np.lexsort((areas.sum(axis=1), areas[:, 0], which))
     last = order[np.flatnonzero(np.diff(which[order], append=-1))]
-    points = np.bincount(which, np.concatenate([one.points for one in whole]), len(places))
-    return [CellSums(places, points, areas[last])]
+    points = np.bincount(which, np.concatenate([one.points for one in whole]), len(first))
+    return [CellSums(cells[first], points, areas[last])]
 
 
 def add_up(parts: Sequence[CellSums]) -> CellSums:

@@ -3,6 +3,7 @@
 import numpy as np
 from jaxtyping import Int
 
+from ..geometry.row_keys import row_keys
 from ..types.arrays import Faces, Indices, Points
 from ..types.mesh import Mesh
 
@@ -61,9 +62,7 @@ def _first_cell(mesh: Mesh, most: int) -> float:
 
 def _join(points: Points, cell: float) -> tuple[Kept, Indices]:
     steps = np.floor(points / cell).astype(np.int64)
-    size = steps.max(axis=0) + 1
-    cells = (steps[:, 0] * size[1] + steps[:, 1]) * size[2] + steps[:, 2]
-    _, first, owner = np.unique(cells, return_index=True, return_inverse=True)
+    _, first, owner = np.unique(row_keys(steps), return_index=True, return_inverse=True)
     # In their old order, which is that of the scan and packs well.
     order = np.argsort(first)
     rank = np.empty_like(order)
@@ -74,5 +73,5 @@ def _join(points: Points, cell: float) -> tuple[Kept, Indices]:
 def _without_collapsed(faces: Faces) -> Left:
     a, b, c = faces.T
     left = faces[(a != b) & (b != c) & (c != a)]
-    _, first = np.unique(np.sort(left, axis=1), axis=0, return_index=True)
+    _, first = np.unique(row_keys(np.sort(left, axis=1)), return_index=True)
     return left[np.sort(first)]

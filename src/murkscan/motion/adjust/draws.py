@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Float
 
+from ...geometry.row_keys import row_keys
 from ...types.arrays import Indices, Scalars
 from .log_terms import Log
 from .settings import AdjustSettings
@@ -44,7 +45,7 @@ def _number_tiles(ties: Ties, state: State) -> Indices:
     looks at it there are three ties, but of three noises two differences.
     """
     place = np.floor(as_placed(ties.pass_a, ties.time_a, ties.point_a, state.paths) / _TOGETHER)
-    return np.asarray(np.unique(place.astype(np.int64), axis=0, return_inverse=True)[1]).ravel()
+    return np.unique(row_keys(place.astype(np.int64)), return_inverse=True)[1]
 
 
 def draw_errors(
