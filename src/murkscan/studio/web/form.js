@@ -3,6 +3,9 @@
 import { order, refresh, studio } from "./ask.js";
 import { button, make, note } from "./dom.js";
 
+// What somebody typed into a form and has not begun, for when its page is shown again.
+const typed = new Map();
+
 // fields: { key, label, kind: number | text | select | switch, value, options, unit, hint, more, pick, required }
 export function commandForm({ page, command, fields, run = "Begin", values: fixed = {}, onchange = () => {} }) {
   const nameOf = () => (typeof command === "function" ? command(read()) : command);
@@ -19,6 +22,11 @@ export function commandForm({ page, command, fields, run = "Begin", values: fixe
     more.length ? make("details", {}, make("summary", { textContent: "More" }), make("div", { className: "fields" }, more)) : null,
     make("div", { className: "typing" }, said, start), fault);
   element.addEventListener("input", write);
+  const own = [page, typeof command === "string" ? command : "", ...inputs.keys(), JSON.stringify(fixed)].join(" ");
+  const left = typed.get(own) ?? new Map();
+  typed.set(own, left);
+  for (const [key, value] of left) give(inputs.get(key), value);
+  element.addEventListener("input", ({ target }) => left.set(target.name, target.type === "checkbox" ? target.checked : target.value));
 
   function read() {
     const values = { ...fixed };
@@ -55,6 +63,7 @@ export function commandForm({ page, command, fields, run = "Begin", values: fixe
     start.disabled = true;
     try {
       tell((await order("api/jobs", asked())).text, "");
+      left.clear();
       await refresh();
     } catch (error) {
       tell(said.textContent, error.message);
@@ -75,6 +84,11 @@ export function commandForm({ page, command, fields, run = "Begin", values: fixe
   element.suggest = (key, names) => inputs.get(key)?.list?.replaceChildren(...names.map((name) => make("option", { value: name })));
   queueMicrotask(write);
   return element;
+}
+
+function give(element, value) {
+  if (element.type === "checkbox") element.checked = value;
+  else if (!element.options || [...element.options].some((option) => option.value === value)) element.value = value;
 }
 
 function input({ key, kind = "text", value = "", options = [], step = "any", min, max, placeholder = "", required = false }) {

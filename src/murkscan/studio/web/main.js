@@ -17,15 +17,19 @@ const PAGES = {
   look: ["Look", lookPage],
   plan: ["Plan", planPage],
 };
-let leave = () => {};
+let leave = () => {}, shown = "";
 
 const tabs = Object.entries(PAGES).map(([name, [title]]) => make("a", { href: `#${name}`, textContent: title, data: { name } }));
 document.getElementById("tabs").append(...tabs);
 
 function show() {
   const [name, ...rest] = location.hash.slice(1).split("/").map(decodeURIComponent);
-  const [title, page] = PAGES[name] ?? PAGES.rig;
-  for (const tab of tabs) tab.toggleAttribute("aria-current", tab.dataset.name === (PAGES[name] ? name : "rig"));
+  const known = PAGES[name] ? name : "rig";
+  const address = [known, ...rest].join("/");
+  if (address === shown) return; // an address of the same page; what was typed stays
+  shown = address;
+  const [title, page] = PAGES[known];
+  for (const tab of tabs) tab.toggleAttribute("aria-current", tab.dataset.name === known);
   document.title = `${title} – murkscan studio`;
   leave();
   const main = document.getElementById("page");
