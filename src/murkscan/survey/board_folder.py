@@ -83,7 +83,8 @@ class BoardFolder:
 
     def _judge(self, seen: Sequence[LookedAt], board: Chessboard, step: AbstractStep) -> None:
         names = tuple((one.view.name, one.stamp) for one in seen)
-        key = repr((board, step)) + repr((names, step.changed()))
+        changed = [file.stat().st_mtime_ns for file in step.files]
+        key = repr((board, step)) + repr((names, changed))
         sizes = Counter(one.size for one in seen if one.view.is_found)
         if key == self._judged[0] or not sizes:
             return

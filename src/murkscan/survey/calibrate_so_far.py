@@ -4,7 +4,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from ..calibrate.adjust.observations import index_of
 from ..calibrate.board.chessboard import Chessboard, Margin
@@ -47,9 +47,10 @@ class AbstractStep(ABC):
             MurkscanError: What the command would refuse whatever the photos show.
         """
 
-    @abstractmethod
-    def changed(self) -> tuple[int, ...]:
-        """Give when the files beside the photos were changed last [ns]."""
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """The files beside the photos, by which they are judged."""
+        return ()
 
 
 @dataclass(frozen=True)
@@ -63,25 +64,24 @@ class CameraStep(AbstractStep):
         session = _session(folder, views, board, size, folder, {})
         return judge_so_far("camera", views, board, size, lambda: fit_camera(session))
 
-    def changed(self) -> tuple[int, ...]:
-        """Nothing is beside them."""
-        return ()
-
 
 @dataclass(frozen=True)
 class AbstractRigStep(AbstractStep):
     """A step on a rig that has a camera."""
 
+    name: ClassVar[str]
+    """The step's."""
+
     rig: Path
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """The rig file."""
+        return (self.rig,)
 
     @abstractmethod
     def plan(self, folder: Path) -> tuple[dict[str, Any], Fit]:
         """Read the rig file, and say how the step is done."""
-
-    @property
-    @abstractmethod
-    def name(self) -> str:
-        """The step's."""
 
     def judge(
         self, folder: Path, views: Sequence[BoardView], board: Chessboard, size: tuple[int, int]
@@ -98,17 +98,14 @@ class AbstractRigStep(AbstractStep):
 
         return judge_so_far(self.name, views, board, size, lambda: fit(session), locate=locate)
 
-    def changed(self) -> tuple[int, ...]:
-        """Give when the rig file was."""
-        return (self.rig.stat().st_mtime_ns,)
-
 
 @dataclass(frozen=True)
 class PortStep(AbstractRigStep):
     """The camera's port."""
 
+    name: ClassVar[str] = "port"
+
     knowledge: PortKnowledge = field(default_factory=PortKnowledge)
-    name = "port"
 
     def plan(self, folder: Path) -> tuple[dict[str, Any], Fit]:
         """Plan as `calibrate port` does."""
@@ -119,8 +116,9 @@ class PortStep(AbstractRigStep):
 class LaserStep(AbstractRigStep):
     """Lasers."""
 
+    name: ClassVar[str] = "laser"
+
     lasers: LaserPlan = field(default_factory=LaserPlan)
-    name = "laser"
 
     def plan(self, folder: Path) -> tuple[dict[str, Any], Fit]:
         """Plan as `calibrate laser` does."""
@@ -131,17 +129,19 @@ class LaserStep(AbstractRigStep):
 class MountStep(AbstractRigStep):
     """The mount on the vehicle."""
 
+    name: ClassVar[str] = "mount"
+
     poses: Path
     clock: PhotoClock
-    name = "mount"
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """The rig file, and the vehicle's log."""
+        return (self.rig, self.poses)
 
     def plan(self, folder: Path) -> tuple[dict[str, Any], Fit]:
         """Plan as `calibrate mount` does."""
         return plan_mount(self.rig, folder, load_poses(self.poses), self.clock)
-
-    def changed(self) -> tuple[int, ...]:
-        """Give when the rig file and the log were."""
-        return (*super().changed(), self.poses.stat().st_mtime_ns)
 
 
 @dataclass(frozen=True)
@@ -151,6 +151,11 @@ class CheckStep(AbstractStep):
     rig: Path
     margin: Margin | None = None
     laser: int = 0
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """The rig file."""
+        return (self.rig,)
 
     def judge(
         self, folder: Path, views: Sequence[BoardView], board: Chessboard, size: tuple[int, int]
@@ -171,10 +176,6 @@ class CheckStep(AbstractStep):
         return SoFar(
             len(found), coverage, str(verdict), verdict.is_good, (), (square,), check.rms,
         )  # fmt: skip
-
-    def changed(self) -> tuple[int, ...]:
-        """Give when the rig file was."""
-        return (self.rig.stat().st_mtime_ns,)
 
 
 def _refuse_size(size: tuple[int, int], rig: Rig, path: Path) -> None:
