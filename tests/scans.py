@@ -12,6 +12,8 @@ from murkscan.types.trajectory import Trajectory
 Surface = Callable[[np.ndarray, np.ndarray], np.ndarray]
 """Depth at x and y [m], NaN where there is none."""
 FOCAL_LENGTH, BASELINE, COTANGENT = 800.0, 0.2, 0.4
+_AT_ONCE = 100
+"""Rays that step at once: their 401 depths fit into a core's memory."""
 
 
 def plane(x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -56,16 +58,17 @@ def scan(
         num_rows: Scan lines.
     """
     num_frames = round(0.12 / spacing)
-    rows = np.arange(num_rows)
-    seen = [
-        _meet(surface, rows[k % 2 :: 2] if interlaced else rows, spacing * k - 0.06, num_rows)
-        for k in range(num_frames)
-    ]
-    points = np.concatenate([points for points, _ in seen])
+    every = np.arange(num_rows)
+    rows = [every[k % 2 :: 2] if interlaced else every for k in range(num_frames)]
+    frame, row = (
+        np.repeat(np.arange(num_frames), [len(some) for some in rows]),
+        np.concatenate(rows),
+    )
+    slopes = (row - (num_rows - 1) / 2) / FOCAL_LENGTH
+    points, met = _meet(surface, spacing * frame - 0.06, slopes)
     random = np.random.default_rng(0).standard_normal(len(points))
     points *= (1 + noise * random / np.linalg.norm(points, axis=1))[:, None]
-    frame = np.repeat(np.arange(num_frames), [len(points) for points, _ in seen])
-    profile = as_profile(points, frame, np.concatenate([row for _, row in seen]), sigma=noise)
+    profile = as_profile(points, frame[met], row[met], sigma=noise)
     ends = np.array([[-0.06, 0.0, 0.0], [spacing * num_frames - 0.06, 0.0, 0.0]])
     times = np.array([0.0, num_frames * 0.04])
     return profile, Trajectory(times, ends, np.tile([1.0, 0.0, 0.0, 0.0], (2, 1)))
@@ -95,25 +98,31 @@ def scan_cloud(surface: Surface, **settings: float | bool) -> PointCloud:
     return merge_profiles(profile, trajectory, axes=("x",))
 
 
-def _meet(
-    surface: Surface, rows: np.ndarray, x0: float, num_rows: int
-) -> tuple[np.ndarray, np.ndarray]:
-    """Find where the sheet is on the surface in each row: step towards it, then bisect."""
-    slope = (rows - (num_rows - 1) / 2)[:, None] / FOCAL_LENGTH
+def _meet(surface: Surface, x: np.ndarray, slopes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Find where rays meet the surface, and which do: step towards it, then bisect.
 
-    def beyond(z: np.ndarray) -> np.ndarray:
-        return z - surface(x0 - BASELINE + z * COTANGENT, slope * z)
+    Args:
+        surface: Its depth.
+        x: Where the camera is for each ray [m].
+        slopes: How far each ray goes along y for each metre of depth.
+    """
 
-    steps = np.repeat(np.linspace(0.4, 0.6, 401)[None], len(rows), axis=0)
-    gap = beyond(steps)
-    enters = (gap[:, :-1] < 0) & (gap[:, 1:] >= 0)
-    first = enters.argmax(axis=1)
-    low, high = steps[0, first][:, None], steps[0, first + 1][:, None]
+    def beyond(z: np.ndarray, some: slice = slice(None)) -> np.ndarray:
+        return z - surface(x[some, None] - BASELINE + z * COTANGENT, slopes[some, None] * z)
+
+    steps = np.linspace(0.4, 0.6, 401)
+    first, enters = np.zeros(len(x), int), np.zeros(len(x), bool)
+    for start in range(0, len(x), _AT_ONCE):
+        some = slice(start, start + _AT_ONCE)
+        gap = beyond(steps[None], some)
+        crossed = (gap[:, :-1] < 0) & (gap[:, 1:] >= 0)
+        first[some], enters[some] = crossed.argmax(axis=1), crossed.any(axis=1)
+    low, high = steps[first][:, None], steps[first + 1][:, None]
     for _ in range(40):
         middle = (low + high) / 2
         is_beyond = beyond(middle) >= 0
         low, high = np.where(is_beyond, low, middle), np.where(is_beyond, middle, high)
     # At a step the sign changes without the depth being met.
-    met = enters.any(axis=1) & (np.abs(beyond(low)) < 1e-6)[:, 0]
-    z, y = low[met, 0], (slope * low)[met, 0]
-    return np.stack([z * COTANGENT - BASELINE, y, z], axis=1), rows[met]
+    met = enters & (np.abs(beyond(low)) < 1e-6)[:, 0]
+    z = low[met, 0]
+    return np.stack([z * COTANGENT - BASELINE, slopes[met] * z, z], axis=1), met
