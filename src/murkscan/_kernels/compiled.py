@@ -4,8 +4,9 @@ Each is compiled on its first use and kept on disk. Numba makes an entry for C a
 beside each; to leave out those that nobody uses saves an eighth of that first time. A part is kept
 within the loops that call it, and by itself nowhere.
 
-What NumPy does in one line, Numba compiles from Python of its own, each in .1 to 2 s: an array that
-is set by another (its error builds a sentence), `argsort`, `searchsorted`, `max` along a slice.
+What NumPy does in one line, Numba compiles from Python of its own, each in .1 to 2 s: an array or a
+row that is set by another or by a tuple (its error builds a sentence), `argsort`, `searchsorted`,
+`max` along a slice.
 """
 
 from functools import partial

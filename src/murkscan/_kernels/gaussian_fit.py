@@ -38,6 +38,15 @@ def _normal_equations(
     return total
 
 
+@part()
+def _fill_damped(work: np.ndarray, matrix: np.ndarray, damped: float) -> None:
+    """Copy a matrix by its lower half, its diagonal times a factor."""
+    for i in range(_SIZE):
+        for j in range(i):
+            work[i, j] = matrix[i, j]
+        work[i, i] = damped * matrix[i, i]
+
+
 @loop()
 def fit_peaks(
     image: np.ndarray, peaks: np.ndarray, down: bool, half_width: int, noise: float, full: float
@@ -61,25 +70,25 @@ def fit_peaks(
         total = _normal_equations(scan, low, high, p, full, matrix, right)
         done = False
         for _ in range(_ITERATIONS):
-            work[:] = matrix
-            step[:] = right
             for k in range(_SIZE):
-                work[k, k] *= 1.0 + damping
+                step[k] = right[k]
+            _fill_damped(work, matrix, 1.0 + damping)
             if not solve(work, step):
                 break
-            trial[:] = p + step
+            for k in range(_SIZE):
+                trial[k] = p[k] + step[k]
             if trial[2] > _NARROWEST / 2 and abs(trial[1] - peak) <= half_width:
                 new = _normal_equations(scan, low, high, trial, full, matrix, right)
                 if new <= total:
                     done = abs(step[1]) < 1e-5
-                    p[:], total = trial, new
+                    p, trial, total = trial, p, new
                     damping *= 0.2
                     if done:
                         break
                     continue
             damping *= 10.0
             _normal_equations(scan, low, high, p, full, matrix, right)
-        work[:] = matrix
+        _fill_damped(work, matrix, 1.0)
         step[:] = 0.0
         step[1] = 1.0
         good = _NARROWEST <= p[2] <= _WIDEST * half_width and p[0] > 0 and damping < 1e6

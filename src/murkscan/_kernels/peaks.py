@@ -97,7 +97,8 @@ def find_peaks(
                 level = np.int64(image[v, u])
                 if position - last[line] > _GAP:
                     if members[line] >= _FEWEST and count < most:
-                        peaks[count] = line, (first_top[line] + last_top[line]) // 2
+                        peaks[count, 0] = line
+                        peaks[count, 1] = (first_top[line] + last_top[line]) // 2
                         count += 1
                     top[line], members[line] = -1, 0
                 last[line] = position
@@ -108,6 +109,7 @@ def find_peaks(
                     last_top[line] = position
     for line in range(num_lines):
         if members[line] >= _FEWEST and count < most:
-            peaks[count] = line, (first_top[line] + last_top[line]) // 2
+            peaks[count, 0] = line
+            peaks[count, 1] = (first_top[line] + last_top[line]) // 2
             count += 1
     return peaks[:count]
