@@ -90,8 +90,8 @@ def _least_median_plane(points: Points) -> tuple[Plane, float]:
         plane = _least_squares_plane(points)
         return plane, _GAUSSIAN * float(np.median(np.abs(plane.distance_to(points))))
     normals, a = normals[usable] / lengths[usable, None], a[usable]
-    distances = np.abs(judges @ normals.T - np.sum(a * normals, axis=1))
-    medians = np.median(distances, axis=0)
+    distances = normals @ judges.T - np.sum(a * normals, axis=1)[:, None]
+    medians = np.median(np.abs(distances, out=distances), axis=1, overwrite_input=True)
     best = int(np.argmin(medians))
     return Plane.through(a[best], normals[best]), _GAUSSIAN * float(medians[best])
 

@@ -49,8 +49,9 @@ class SplineSurface:
 
     def sigma(self, places: Places) -> Scalars:
         """Give the standard deviation of the surface at places [m]."""
-        design = _design(places, self.knots).toarray()
-        return np.sqrt(np.maximum(np.einsum("ni,ij,nj->n", design, self.covariance, design), 0.0))
+        design = _design(places, self.knots)
+        variance = np.asarray(design.multiply(design @ self.covariance).sum(axis=1)).ravel()
+        return np.sqrt(np.maximum(variance, 0.0))
 
     def normals(self, places: Places) -> Float[np.ndarray, "n 3"]:
         """Give the unit normal, upwards, at places."""
@@ -100,11 +101,14 @@ def fit_spline_surface(
         )
     shape = (len(knots[0]) - _DEGREE - 1, len(knots[1]) - _DEGREE - 1)
     bending = _bending(shape) * (_STIFFNESS * len(places) / design.shape[1])
+    turned, each = sparse.csr_matrix(design.T), np.diff(design.indptr)
     weights, surface = np.ones(len(places)), np.full(len(places), np.inf)
     for _ in range(_NUM_ROUNDS):
-        weighed = sparse.csr_matrix(sparse.diags_array(weights) @ design)
-        normal = (design.T @ weighed + bending).tocsc()
-        coefficients = spsolve(normal, weighed.T @ heights)
+        shares = (design.data * np.repeat(weights, each), design.indices, design.indptr)
+        normal = turned @ sparse.csr_matrix(shares, shape=design.shape) + bending
+        # The same matrix by columns, since it is symmetric.
+        by_columns = sparse.csc_matrix((normal.data, normal.indices, normal.indptr), normal.shape)
+        coefficients = spsolve(by_columns, turned @ (weights * heights))
         before, surface = surface, design @ coefficients
         off = heights - surface
         scale = max(_GAUSSIAN * float(np.median(np.abs(off))), 1e-9)
