@@ -14,7 +14,6 @@ from ..types.plane import span_plane
 from ..types.quantity import Quantity
 from .height_errors import HeightErrors, find_height_errors
 from .sample import Sample
-from .surface import usual_noise
 
 _MOST_SHIFTED = 2000
 """Points for which the rig's errors are traced."""
@@ -77,7 +76,7 @@ class _Open:
         up = deviation.normals.sum(axis=0)
         sides = span_plane(up / max(float(np.linalg.norm(up)), 1e-300))
         places = sample.cloud.points @ sides.T
-        noise = usual_noise(sample)
+        noise = sample.usual_noise
         errors = find_height_errors(
             np.column_stack([places, deviation.values]), np.array([0.0, 0.0, 1.0]), noise=noise
         )

@@ -31,7 +31,7 @@ def measure_distance(sample: Sample, ends: Points) -> Measurement:
     """
     which = np.array([_nearest(sample, end) for end in ends])
     points = sample.cloud.points[which]
-    sigma = noise_at(sample, points)
+    sigma = noise_at(sample.cloud, points)
     common = np.zeros((2, 3, 0)) if sample.shifts is None else sample.shifts(which)
     length = measure_length(points, _directions(sample, which) * sigma[:, None], common)
     quantity = Quantity(

@@ -10,7 +10,7 @@ from ..types.measurement import Measurement
 from ..types.mesh import Mesh
 from ..types.quantity import Quantity
 from .sample import Sample
-from .surface import area_vectors, rig_modes, usual_noise
+from .surface import area_vectors, rig_modes
 
 
 def measure_enclosed(mesh: Mesh, sample: Sample) -> Measurement:
@@ -33,7 +33,7 @@ def measure_enclosed(mesh: Mesh, sample: Sample) -> Measurement:
     vectors, middle = area_vectors(mesh), mesh.vertices.mean(axis=0)
     centres = mesh.vertices[mesh.faces].mean(axis=1) - middle
     volume = abs(float(np.einsum("ij,ij->", vectors, centres)) / 3)
-    noise = usual_noise(sample)
+    noise = sample.usual_noise
     own = noise * math.sqrt(float((vectors**2).sum()))
     modes = rig_modes(sample)
     common = None

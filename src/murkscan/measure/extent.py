@@ -20,7 +20,6 @@ from .surface import (
     require_one_sheet,
     rig_modes,
     rim_lengths,
-    usual_noise,
 )
 from .trust import FitUncertainty
 
@@ -101,7 +100,7 @@ def measure_area(mesh: Mesh, sample: Sample) -> Measurement:
     seen = np.abs(np.einsum("ij,ij->i", vectors, normals)) / np.maximum(length, 1e-12)
     area = float(np.where(length > 0, seen, flat).sum())
     rim = rim_lengths(mesh)
-    noise = usual_noise(sample)
+    noise = sample.usual_noise
     own = math.hypot(noise * float(np.sqrt((rim**2).sum())), _TILT**2 / 2 * area / math.sqrt(3))
     unit = vectors / np.maximum(flat, 1e-300)[:, None]
     share = np.where(length > 0, seen, flat)
@@ -159,7 +158,7 @@ def _variance_of_volume(mesh: Mesh, sample: Sample, up: Vector, shadows: Scalars
     weights = np.bincount(mesh.faces.ravel(), np.repeat(shadows / 3, 3), len(mesh.vertices))
     # Where triangles of the border are divided, many corners stand for one point.
     number, which = np.unique(nearest_points(sample, mesh.vertices), return_inverse=True)
-    noise = usual_noise(sample)
+    noise = sample.usual_noise
     errors = find_height_errors(sample.cloud.points[number], up, noise=noise)
     profile, line = sample.profile[number], sample.line[number]
     return errors.variance_of_sum(np.bincount(which, weights), profile, line, noise=noise)

@@ -7,7 +7,6 @@ from ..geometry.shape_fit import ShapeFit
 from ..types.arrays import Points, Scalars
 from ..types.deviation import Deviation
 from .sample import Sample
-from .surface import usual_noise
 
 _PART = "--near-m and --within-mm or --box-m"
 _NO_SHAPE = 3.0
@@ -36,7 +35,7 @@ def remark_on_fit(kind: str, fit: ShapeFit[AnyShape], sample: Sample) -> tuple[s
             f"Only {share:.0%} of the {len(sample):,} points lie on this plane, and the others "
             f"were left out. Choose the part that is meant with {_PART}.",
         )
-    noise = usual_noise(sample)
+    noise = sample.usual_noise
     if not fit.rms > _NO_SHAPE * noise:
         return ()
     return (

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Float
@@ -12,6 +13,7 @@ from ..geometry.point_normals import complete_normals
 from ..geometry.stripe_blur import Sight
 from ..types.arrays import Indices, Mask, Points
 from ..types.cloud import PointCloud
+from .noise import usual_noise
 
 _APART = 1000
 """Numbers between the last profile and the first row of places: they are no neighbours."""
@@ -80,6 +82,11 @@ class Sample:
     def __len__(self) -> int:
         """Count the points."""
         return len(self.cloud)
+
+    @cached_property
+    def usual_noise(self) -> float:
+        """The usual standard deviation of a point [m], which several measures ask for."""
+        return usual_noise(self.cloud)
 
     def __getitem__(self, which: Mask) -> "Sample":
         """Pick some of the points."""

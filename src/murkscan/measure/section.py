@@ -116,7 +116,7 @@ def _extent(name: str, values: Scalars, axis: Vector, numbers: Indices, sample: 
     ends = numbers[[int(np.argmin(values)), int(np.argmax(values))]]
     # Where nobody knows from where an end was seen, it may err along the axis.
     rays = np.tile(axis, (2, 1)) if sample.sight is None else sample.sight.rays[ends]
-    noise = noise_at(sample, sample.cloud.points[ends])
+    noise = noise_at(sample.cloud, sample.cloud.points[ends])
     # Points err along their rays; smoothing then moves the surface along its normals.
     smoothed = sample.cloud.normals[ends].astype(float) @ axis
     independent = float(np.linalg.norm(np.maximum(np.abs(rays @ axis), np.abs(smoothed)) * noise))

@@ -9,13 +9,10 @@ from ..geometry.closest import open_sides
 from ..geometry.overlap import has_another_sheet
 from ..types.arrays import Indices, Points, Scalars
 from ..types.mesh import Mesh
-from .noise import noise_at
 from .sample import Sample
 
 _MOST_SHIFTED = 2000
 """Points for which the rig's errors are traced; over the surface they vary as a linear map."""
-_PROBES = 60
-"""Places at which the surface's noise is looked at."""
 _LOOKED_AT = 5000
 """Triangles that are looked at for another sheet over them."""
 _MOST_TWICE = 0.02
@@ -59,12 +56,6 @@ def rim_lengths(mesh: Mesh) -> Scalars:
 def nearest_points(sample: Sample, places: Points) -> Indices:
     """Give the number of the scan's point nearest to each place."""
     return np.asarray(KDTree(sample.cloud.points).query(places)[1])
-
-
-def usual_noise(sample: Sample) -> float:
-    """Give the usual standard deviation of a point of the scan [m]."""
-    some = np.linspace(0, len(sample) - 1, min(_PROBES, len(sample))).astype(int)
-    return float(np.median(noise_at(sample, sample.cloud.points[some])))
 
 
 def rig_modes(sample: Sample) -> Modes | None:
