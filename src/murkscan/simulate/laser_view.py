@@ -12,7 +12,7 @@ from ..optics.spread import Spread
 from ..types.arrays import Pixels, Scalars
 from .scene import Scene
 from .stripe_image import Rendering
-from .water_blur import WaterBlur, Weights
+from .water_blur import GlowAt, WaterBlur, Weights
 
 _BEYOND = 0.7
 """How far beyond the picture light counts, as the tangent of an angle: with 0.46 the glow is up to
@@ -53,8 +53,14 @@ def view_laser(scene: Scene, number: int) -> LaserView:
     glow = _glow_at(scene, beam, view).reshape(height, width).astype(np.float32)
     stripe_blur = glow_blur = None
     if scene.medium is not None and scene.forward_scattering and scene.medium.scattering > 0:
-        stripe_blur = _blur_of(scene, Spread.of(scene.medium), beam, scan_lines, view)
-        glow_blur = _blur_of(scene, Spread.of_glow(scene.medium), beam, scan_lines, view)
+        spread = Spread.of_glow(scene.medium)
+
+        def glow_at(pixels: Pixels) -> Weights:
+            there = view_sheet(beam, scan_lines, pixels)
+            return _glow_at(scene, beam, there)[:, None] * _weigh(spread, there, scene.attenuation)
+
+        stripe_blur = _blur_of(scene, Spread.of(scene.medium), scan_lines, view, None)
+        glow_blur = _blur_of(scene, spread, scan_lines, view, glow_at)
     return LaserView(beam, scan_lines, view, glow, stripe_blur, glow_blur)
 
 
@@ -65,14 +71,13 @@ def _glow_at(scene: Scene, beam: Beam, view: SheetView) -> Scalars:
 
 
 def _blur_of(
-    scene: Scene, spread: Spread, beam: Beam, scan_lines: SheetScanLines, view: SheetView
+    scene: Scene,
+    spread: Spread,
+    scan_lines: SheetScanLines,
+    view: SheetView,
+    glow_at: GlowAt | None,
 ) -> WaterBlur:
     scale = scan_lines.pixels_per_tangent()
-
-    def glow_at(pixels: Pixels) -> Weights:
-        there = view_sheet(beam, scan_lines, pixels)
-        return _glow_at(scene, beam, there)[:, None] * _weigh(spread, there, scene.attenuation)
-
     return WaterBlur.of(
         scene.rig.camera.size,
         scan_lines.laser.axis,

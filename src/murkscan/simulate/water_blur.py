@@ -7,7 +7,7 @@ Gaussian of many pixels is drawn on a picture that is smaller by as much.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -52,7 +52,8 @@ class Bell:
     rim: int
     """Pixels of that level by which it reaches beyond the picture."""
     beyond: AnyPicture
-    """The sheet's own glow, weighted, on that level with that rim, if nothing stood in its way."""
+    """The sheet's own glow, weighted, on that level with that rim, if nothing stood in its way;
+    empty where only a stripe is spread."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +75,7 @@ class WaterBlur:
         sigmas: tuple[float, ...],
         weights: Weights,
         reach: float,
-        glow_at: GlowAt,
+        glow_at: GlowAt | None,
     ) -> "WaterBlur":
         """Tabulate the weights of Gaussians.
 
@@ -84,7 +85,8 @@ class WaterBlur:
             sigmas: 1σ of each Gaussian [px].
             weights: Weight of each Gaussian at each pixel, row by row.
             reach: How far beyond the picture light counts [px].
-            glow_at: Gives the sheet's own glow, weighted for each Gaussian.
+            glow_at: Gives the sheet's own glow, weighted for each Gaussian; None where only a
+                stripe is to be spread.
         """
         width, height = size
         weights = weights.astype(np.float32)
@@ -93,9 +95,10 @@ class WaterBlur:
             level = int(np.clip(math.floor(math.log2(sigma / _FINEST)), 0, _LAST))
             own = math.sqrt((sigma / 2**level) ** 2 - (_RESAMPLING if level else 0.0))
             rim = math.ceil(min(_RIM * own, reach / 2**level)) if level >= _RIM_LEVEL else 0
-            beyond = _look_beyond(size, level, rim, number, glow_at)
             own_weights = _fill(weights[:, number].reshape(height, width))
-            bells.append(Bell(level, own, own_weights, rim, beyond))
+            bells.append(Bell(level, own, own_weights, rim, np.zeros((0, 0), np.float32)))
+        if glow_at is not None:
+            bells = _look_beyond(size, bells, glow_at)
         return cls(size, axis, tuple(bells))
 
     def spread_stripe(self, sharp: Picture) -> Picture:
@@ -158,22 +161,21 @@ class WaterBlur:
         return total[:height, :width]
 
 
-def _look_beyond(
-    size: tuple[int, int],
-    level: int,
-    rim: int,
-    number: int,
-    glow_at: GlowAt,
-) -> AnyPicture:
-    """Give the weighted glow of one Gaussian on its level with its rim."""
-    if rim == 0:
-        return np.zeros((0, 0), np.float32)
-    fine = min(level, _TABLED)
-    rim <<= level - fine
-    shape = tuple(_cells(side, fine) + 2 * rim for side in (size[1], size[0]))
-    pixels = _pixels((shape[0], shape[1]), fine, rim)
-    weighted = glow_at(pixels)[:, number]
-    return _shrink(weighted.astype(np.float32).reshape(shape), level - fine)
+def _look_beyond(size: tuple[int, int], bells: list[Bell], glow_at: GlowAt) -> list[Bell]:
+    """Give Gaussians the weighted glow beyond the picture, looked up once for those of a level."""
+    found = list(bells)
+    for fine in range(_RIM_LEVEL, _TABLED + 1):
+        mine = [n for n, bell in enumerate(bells) if bell.rim and min(bell.level, _TABLED) == fine]
+        rims = [bells[number].rim << (bells[number].level - fine) for number in mine]
+        widest = max(rims, default=0)
+        shape = tuple(_cells(side, fine) + 2 * widest for side in (size[1], size[0]))
+        weighted = glow_at(_pixels((shape[0], shape[1]), fine, widest)) if mine else np.zeros(0)
+        for number, rim in zip(mine, rims, strict=True):
+            cut = slice(widest - rim, rim - widest or None)
+            own = weighted[:, number].astype(np.float32).reshape(shape)[cut, cut]
+            beyond = _shrink(own, bells[number].level - fine)
+            found[number] = replace(bells[number], beyond=beyond)
+    return found
 
 
 def _fill(picture: Picture) -> AnyPicture:
