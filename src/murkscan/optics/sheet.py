@@ -92,6 +92,15 @@ def locate_on_fan(points: Points, fan: Fan, index: float | None = None) -> FanCo
     Raises:
         InputError: The fan has a port, but no index is given.
     """
+    if fan.port is None:
+        away = points - fan.origin
+        ahead, aside = away @ fan.direction, away @ fan.tangent
+        lit = np.where(ahead >= 0, 1.0, np.nan)
+        return FanCoordinates(
+            lit * np.arctan2(aside, ahead),
+            lit * np.hypot(ahead, aside),
+            lit * fan.plane.distance_to(points),
+        )
     found = locate_points(points, _as_arrays(fan), interfaces_of(fan.port, index))
     return FanCoordinates(*np.ascontiguousarray(found.T))
 
