@@ -93,12 +93,17 @@ def fit_stripes(
     matrix = np.empty((_SIZE, _SIZE))
     half = skirts.shape[1] // 2
     rows = np.empty((_SIZE + 1, 2 * half + 1))
+    # Windows as numbers of one kind: what fits them is compiled once, whatever pictures are.
+    raws, scans = np.empty(2 * half + 1), np.empty(2 * half + 1)
     for i in range(len(lines)):
         middle = int(np.rint(starts[i]))
         low, high = max(middle - half, 0), min(middle + half, len(levels) - 1)
-        raw, scan = levels[low : high + 1, lines[i]], signal[low : high + 1, lines[i]]
+        raw, scan, white = raws[: high - low + 1], scans[: high - low + 1], 0
+        for v in range(len(raw)):
+            raw[v], scan[v] = float(levels[low + v, lines[i]]), float(signal[low + v, lines[i]])
+            white += raw[v] >= noise[4]
         skirt = skirts[i, low - middle + half : high - middle + half + 1]
-        if np.sum(raw >= noise[4]) > _GLARE * shape[0] + 1.0:
+        if white > _GLARE * shape[0] + 1.0:
             continue
         _begin(scan, middle - low, starts[i] - middle, shape, p)
         variance = -1.0
@@ -125,12 +130,12 @@ def fit_stripes(
 def _begin(scan: np.ndarray, middle: int, off: float, shape: np.ndarray, p: np.ndarray) -> None:
     """Start with the background's straight line between the window's ends."""
     n = len(scan)
-    left = 0.5 * (float(scan[0]) + float(scan[1]))
-    right = 0.5 * (float(scan[n - 1]) + float(scan[n - 2]))
+    left = 0.5 * (scan[0] + scan[1])
+    right = 0.5 * (scan[n - 1] + scan[n - 2])
     slope = (right - left) / (n - 2)
     top = 0.0
     for v in range(max(middle - 1, 0), min(middle + 2, n)):
-        top = max(top, float(scan[v]))
+        top = max(top, scan[v])
     base = left + slope * (middle - 0.5)
     p[0], p[1], p[2], p[3] = off, max(top - base, 1.0), np.log(shape[0]), shape[2]
     p[4], p[5], p[6] = base, slope, 0.0
@@ -167,13 +172,13 @@ def _normal_equations(
     width = np.exp(p[2])
     count = 0
     for v in range(len(scan)):
-        level = float(scan[v])
+        level = scan[v]
         along = float(v - middle)
         x = (along - p[0]) / width
         core = np.exp(-0.5 * x * x)
         profile = core + p[3] * skirt[v]
         model = p[1] * profile + p[4] + p[5] * along + p[6] * along * along
-        lit = min(max(model + float(raw[v]) - level, 0.0), noise[4])
+        lit = min(max(model + raw[v] - level, 0.0), noise[4])
         root = 0.0
         if raw[v] < noise[4]:
             root = 1.0 / np.sqrt(max(noise[0] + lit * (noise[1] + lit * noise[2]), noise[3]))
