@@ -8,32 +8,35 @@ from .compiled import loop, part
 _SIZE = 5
 """Parameters: centre, its slope over lines, its speed over frames, its curvature over both."""
 _TURNS = 3
-_MOST, _COLUMNS = 512, 7
+_MOST, _COLUMNS = 512, 8
 """Neighbours of a centre that are looked at, and what is known of each."""
 _BESIDE, _ALL, _OWN = 2.0, 8.0, 0.7
 """1σ of the Gaussians by which scan lines count, where it is measured how far the surface is off:
 those around a centre, and its own [lines]."""
 _TOLD = 2.0
 """Times that a square exceeds its own variance, to tell anything; what is more is shrunk by it."""
+_ONE_WAY = 3.0
+"""Scan lines that are drawn one way by what darkens the stripe unevenly."""
 
-_SUMS = 5
-_TOTAL, _SQUARES = 0, 1
-_WEIGHTS, _PAIRS, _MISSES, _TWICE, _ROOTS = 0, 1, 2, 3, 4
+_SUMS = 6
+_TOTAL, _SQUARES, _PULL = 0, 1, 2
+_WEIGHTS, _PAIRS, _MISSES, _TWICE, _ROOTS, _DRAWN = 0, 1, 2, 3, 4, 5
 """What is summed up over the frames of each scan line: by `_weigh_errors` and `_sum_misfits`."""
 
 
 @loop()
 def join_centres(
     lines: np.ndarray, times: np.ndarray, centres: np.ndarray, sigma: np.ndarray,
-    common: np.ndarray, rough: np.ndarray, starts: np.ndarray, first: int, last: int, reach: float,
-    length: float, alone: float, same: float, seen: float,
+    common: np.ndarray, drawn: np.ndarray, rough: np.ndarray, starts: np.ndarray, first: int,
+    last: int, reach: float, length: float, alone: float, same: float, seen: float,
 ) -> np.ndarray:  # fmt: skip
     """Give centres first … last and their standard deviations, joined with those around (n 2).
 
     `sigma` is what each centre errs by itself, or as those of `length` lines around do. Of its
     square, a share `alone` is its frame's own, and a share `same` errs alike in all frames;
     `seen` is the share that frames have in common, be it by error or as the surface is rough.
-    `common` is what all neighbours err by together, with its sign.
+    `common` is what all neighbours err by together, with its sign; by `drawn`, all frames err
+    alike, and a few scan lines.
 
     All are sorted by frame, then by line; frame f has the centres starts[f] … starts[f + 1].
     Lines and times are counted in lines and frames. Neighbours lie up to `reach` lines away, in all
@@ -41,13 +44,15 @@ def join_centres(
     are `rough` [px], and with the misfit of all beyond their noise.
     """
     joined = np.empty((last - first, 2))
-    noise = sigma**2 + common**2
+    noise = sigma**2 + common**2 + drawn**2
     near = np.empty((_COLUMNS, _MOST))
     sums = np.empty((_SUMS, 2 * int(reach) + 1))
     for i in range(first, last):
-        count = _gather(i, lines, times, centres, noise, common, starts, reach, rough[i], near)
+        count = _gather(
+            i, lines, times, centres, noise, common, drawn, starts, reach, rough[i], near
+        )
         off, joined[i - first, 1] = _join_one(
-            near, count, sigma[i] ** 2, noise[i], length, alone, same, seen, sums
+            near, count, sigma[i] ** 2, drawn[i] ** 2, noise[i], length, alone, same, seen, sums
         )
         joined[i - first, 0] = centres[i] + off
     return joined
@@ -55,12 +60,13 @@ def join_centres(
 
 @part()
 def _join_one(
-    near: np.ndarray, count: int, own: float, variance: float, length: float, alone: float,
-    same: float, seen: float, sums: np.ndarray,
+    near: np.ndarray, count: int, own: float, drawn: float, variance: float, length: float,
+    alone: float, same: float, seen: float, sums: np.ndarray,
 ) -> tuple[float, float]:  # fmt: skip
     """Put a bent surface through one centre's neighbours; give by how much it is off, and 1σ.
 
-    `own` is the variance that the centre has by itself, `variance` with what all err by together.
+    `own` is the variance that the centre has by itself, `drawn` what uneven light adds to it, and
+    `variance` that of all.
     """
     p = np.zeros(_SIZE)
     matrix, right = np.empty((_SIZE, _SIZE)), np.empty(_SIZE)
@@ -74,10 +80,11 @@ def _join_one(
         if turn == 1:
             excess = max(mean, 0.0)
     together = _weigh_errors(matrix, near, count, p, excess, sums)
-    known = 0.0
+    known, pull = 0.0, 0.0
     for b in range(sums.shape[1]):
         known += alone * sums[_SQUARES, b] + same * sums[_TOTAL, b] ** 2
-    known = min(length * known, (alone + same) * own)
+        pull += sums[_PULL, b] ** 2
+    known = min(length * known, (alone + same) * own) + min(_ONE_WAY * pull, drawn)
     # What goes on over some lines is noise or the surface, and not both.
     known = max(first_variance(matrix), known)
     if not _sum_misfits(near, count, p, sums):
@@ -141,7 +148,7 @@ def _weigh_errors(
     answer[0] = 1.0
     substitute(root, answer)
     along, later, off, noise, far, own = near[0], near[1], near[2], near[3], near[4], near[5]
-    common = near[6]
+    common, drawn = near[6], near[7]
     p0, p1, p2, p3, p4 = p[0], p[1], p[2], p[3], p[4]
     b0, b1, b2, b3, b4 = answer[0], answer[1], answer[2], answer[3], answer[4]
     together, middle = 0.0, sums.shape[1] // 2
@@ -157,13 +164,14 @@ def _weigh_errors(
         b = middle + int(np.rint(a))
         sums[_TOTAL, b] += error
         sums[_SQUARES, b] += error * error
+        sums[_PULL, b] += share * drawn[k]
     return together
 
 
 @part(error_model="numpy")
 def _sum_misfits(near: np.ndarray, count: int, p: np.ndarray, sums: np.ndarray) -> bool:
     """Sum up by scan line what the surface misses; tell whether any line has several frames."""
-    along, later, off, noise = near[0], near[1], near[2], near[3]
+    along, later, off, noise, drawn = near[0], near[1], near[2], near[3], near[7]
     p0, p1, p2, p3, p4 = p[0], p[1], p[2], p[3], p[4]
     middle, shows = sums.shape[1] // 2, False
     sums[:] = 0.0
@@ -178,6 +186,7 @@ def _sum_misfits(near: np.ndarray, count: int, p: np.ndarray, sums: np.ndarray) 
         sums[_MISSES, b] += miss
         sums[_TWICE, b] += miss * miss
         sums[_ROOTS, b] += np.sqrt(weight)
+        sums[_DRAWN, b] += weight * drawn[k]
     return shows
 
 
@@ -188,14 +197,15 @@ def _measure_own(sums: np.ndarray, alone: float, same: float) -> tuple[float, fl
     A share `alone` of each centre's variance is noise of its frame, a share `same` of all frames.
     """
     middle = sums.shape[1] // 2
-    off, total, noise = 0.0, 0.0, 0.0
+    off, total, noise, pull = 0.0, 0.0, 0.0, 0.0
     for b in range(sums.shape[1]):
         near = np.exp(-0.5 * ((b - middle) / _OWN) ** 2)
         weight = sums[_WEIGHTS, b]
         off += near * sums[_MISSES, b]
         total += near * weight
         noise += near * near * (alone * weight + same * sums[_ROOTS, b] ** 2)
-    return off / total, noise / total**2
+        pull += near * sums[_DRAWN, b]
+    return off / total, (noise + pull**2) / total**2
 
 
 @part(error_model="numpy")
@@ -210,7 +220,7 @@ def _measure_misfit(sums: np.ndarray, seen: float, own: float, reach: float) -> 
     for b in range(sums.shape[1]):
         near = np.exp(-0.5 * ((b - middle) / reach) ** 2)
         weight = sums[_WEIGHTS, b]
-        expected = seen * (sums[_ROOTS, b] ** 2 - weight)
+        expected = seen * (sums[_ROOTS, b] ** 2 - weight) + sums[_DRAWN, b] ** 2
         products += near * (sums[_MISSES, b] ** 2 - sums[_TWICE, b] - expected)
         several = weight**2 - sums[_PAIRS, b]
         pairs += near * several
@@ -223,12 +233,14 @@ def _measure_misfit(sums: np.ndarray, seen: float, own: float, reach: float) -> 
 @part()
 def _gather(
     i: int, lines: np.ndarray, times: np.ndarray, centres: np.ndarray, noise: np.ndarray,
-    common: np.ndarray, starts: np.ndarray, reach: float, rough: float, near: np.ndarray,
+    common: np.ndarray, drawn: np.ndarray, starts: np.ndarray, reach: float, rough: float,
+    near: np.ndarray,
 ) -> int:  # fmt: skip
     """List what may be the same surface, and give how many there are.
 
     Each has its distance in lines and in frames, the difference of centres, its variance, its share
-    of the misfit, what the surface's roughness adds, and what it errs by as others do.
+    of the misfit, what the surface's roughness adds, and what it errs by as others do: all, and
+    those of its scan line.
     """
     count = 0
     for f in range(len(starts) - 1):
@@ -248,6 +260,7 @@ def _gather(
             near[4, count] = far if j != i else 0.0
             near[5, count] = (rough * far) ** 2 if j != i else 0.0
             near[6, count] = common[j]
+            near[7, count] = drawn[j]
             count += 1
     return count
 

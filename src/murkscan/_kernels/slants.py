@@ -19,22 +19,36 @@ that the lens blurs by w falls as its Gaussian's integral, which bends by 0.64 /
 def measure_slants(
     lines: np.ndarray, centres: np.ndarray, logs: np.ndarray, sigma: np.ndarray, step: float
 ) -> np.ndarray:
-    """Measure slope and change of light around each centre, and how dark an end is (n 4).
+    """Measure slope and change of light around each centre, and how dark it is (n 5).
 
     Lines do not decrease. `logs` are logarithms of the stripe's light with standard deviations
     `sigma`; `step` is the most by which a surface's centre differs from that of the scan line
     beside it. Gives pixels a line, e-folds a line, and the standard deviation of the latter, which
     is 0, as the change is, where no neighbour tells; and by how many e-folds the last centre before
-    a gap is darker than those further in, 0 elsewhere.
+    a gap is darker than those further in, 0 elsewhere; and by how many each is darker than what is
+    brightest on either side of it, 0 where it is not.
     """
-    found = np.zeros((len(lines), 4))
+    found = np.zeros((len(lines), 5))
     near = np.empty(2 * _FAR + 1, np.int64)
     for i in range(len(lines)):
         count = _follow(i, lines, centres, step, near)
         found[i, 0] = _fit_slope(i, lines, centres, near[:count])
         found[i, 1], found[i, 2] = _fit_change(i, lines, logs, sigma, near[:count])
         found[i, 3] = _darken(i, lines, logs, near[:count])
+        found[i, 4] = _dip(i, lines, logs, near[:count])
     return found
+
+
+@part()
+def _dip(i: int, lines: np.ndarray, logs: np.ndarray, near: np.ndarray) -> float:
+    """Give by how much the brightest on the darker side exceeds a centre; 0 where it does not."""
+    before, after = -np.inf, -np.inf
+    for j in near:
+        if lines[j] < lines[i]:
+            before = max(before, logs[j])
+        elif lines[j] > lines[i]:
+            after = max(after, logs[j])
+    return max(min(before, after) - logs[i], 0.0)
 
 
 @part()

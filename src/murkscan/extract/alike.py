@@ -29,8 +29,13 @@ _MOST = 0.9
 _EACH = 4
 """Centres of a third difference: of neighbouring ones, one in so many is independent."""
 
+_UNEVEN = 1.0
+"""Standard deviations that uneven light should add to a third difference, to tell whether it does.
+"""
+
 _Bends = Float[np.ndarray, "frames _"]
-"""Third differences in standard deviations, by frame and scan line; NaN where there are none."""
+"""Third differences, or what is expected of them, in standard deviations, by frame and scan line;
+NaN where there are none."""
 _Starts = Int[np.ndarray, " _"]
 """Number of the first centre of each frame, and of all."""
 
@@ -48,10 +53,19 @@ class Alike:
     seen: float = 0.0
     """Variance that they have in common from line to line, by error or as a rough surface has it,
     which centres are told to have as well; as a share of the same."""
+    drawn: float = 1.0
+    """By how much of what is expected uneven light draws centres."""
 
     @classmethod
     def of(
-        cls, lines: Scalars, straight: Scalars, sigma: Scalars, starts: _Starts, *, noise: Noise
+        cls,
+        lines: Scalars,
+        straight: Scalars,
+        sigma: Scalars,
+        drawn: Scalars,
+        starts: _Starts,
+        *,
+        noise: Noise,
     ) -> "Alike":
         """Measure it by third differences of centres that are one, two and three lines apart.
 
@@ -64,12 +78,14 @@ class Alike:
             lines: Scan line of each centre, frame by frame.
             straight: Where it lies from an even wall [full-frame px].
             sigma: Its standard deviation by itself [full-frame px].
+            drawn: What uneven light is expected to draw it by, 1σ [full-frame px].
             starts: Number of each frame's first centre, and of all.
             noise: Of a pixel: frames share errors where neighbouring pixels do.
         """
-        bends = _list_bends(lines, straight, sigma, starts)
+        bends, uneven = _list_bends(lines, straight, sigma, drawn, starts)
+        draws = _measure_draws(bends[-1], uneven[-1])
         if min(int(np.isfinite(each).sum()) for each in bends) <= 3 * ENOUGH:
-            return cls()
+            return cls(drawn=draws)
         same = [_correlate(each) for each in bends]
         spread = [(float(np.nanmedian(np.abs(each))) / MEDIAN) ** 2 for each in bends]
         copied = _correlate(np.where(np.abs(bends[0]) < _EDGE, bends[0], np.nan))
@@ -77,32 +93,55 @@ class Alike:
         if noise.smoothed:
             blocks = max(min(np.array(same) * spread / _BENT), 0.0)
             seen = copied + blocks
-            return cls(1.0 + 2.0 * float(_BLOCKS.sum()), 1.0 - copied, seen, seen)
+            return cls(1.0 + 2.0 * float(_BLOCKS.sum()), 1.0 - copied, seen, seen, draws)
         *near, far = (
             one * (1.0 - max(both - same[0], 0.0)) for one, both in zip(spread, same, strict=True)
         )
         shared = sum(_SHARED * max(1.0 - each / max(far, 1e-12), 0.0) for each in near)
         erring = copied if noise.shared else 0.0
-        return cls(min(1.0 + 2.0 * shared, _LONGEST), 1.0 - erring, erring, copied)
+        length = min(1.0 + 2.0 * shared, _LONGEST)
+        return cls(length, 1.0 - erring, erring, copied, draws)
 
 
-def _list_bends(lines: Scalars, straight: Scalars, sigma: Scalars, starts: _Starts) -> list[_Bends]:
-    """List the third differences of centres, by how many scan lines they are apart."""
+def _list_bends(
+    lines: Scalars, straight: Scalars, sigma: Scalars, drawn: Scalars, starts: _Starts
+) -> tuple[list[_Bends], list[_Bends]]:
+    """List the third differences of centres, by how many scan lines they are apart.
+
+    And what uneven light is expected to add to each.
+    """
     # Fields' lines may lie half a line apart.
     step = 1 if np.all(lines == np.rint(lines)) else 2
     place = np.rint(step * (lines - lines.min())).astype(int)
-    table = np.full((2, len(starts) - 1, int(place.max()) + 1), np.nan)
+    table = np.full((3, len(starts) - 1, int(place.max()) + 1), np.nan)
     frame = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
-    table[:, frame, place] = straight, sigma**2
+    table[:, frame, place] = straight, sigma**2, drawn**2
     width = table.shape[2]
-    bends = []
+    bends, uneven = [], []
     for apart in (step * each for each in APART):
         four = [table[:, :, k * apart : max(width - (3 - k) * apart, 0)] for k in range(4)]
         total = sum(weight * one[0] for weight, one in zip(THIRD, four, strict=True))
-        spread = sum(weight**2 * one[1] for weight, one in zip(THIRD, four, strict=True))
+        spread, more = (
+            sum(weight**2 * one[row] for weight, one in zip(THIRD, four, strict=True))
+            for row in (1, 2)
+        )
         whole = np.abs(total) < JUMP * np.linalg.norm(THIRD)
         bends.append(np.where(whole, total / np.sqrt(spread), np.nan))
-    return bends
+        uneven.append(np.sqrt(more / spread))
+    return bends, uneven
+
+
+def _measure_draws(bends: _Bends, uneven: _Bends) -> float:
+    """Measure by how much of what is expected uneven light adds to third differences.
+
+    Half of them lie within their median size, noise and light together, if it is that much; what
+    is more than expected is the surface.
+    """
+    told = np.isfinite(bends) & (uneven > _UNEVEN)
+    shares = ((bends[told] / MEDIAN) ** 2 - 1.0) / uneven[told] ** 2
+    # As much as `ENOUGH` would tell is known beforehand.
+    known = np.concatenate([shares, np.tile([0.0, 2.0], ENOUGH // 2)])
+    return math.sqrt(np.clip(np.median(known), 0.0, 1.0))
 
 
 def _correlate(bends: _Bends) -> float:

@@ -51,6 +51,8 @@ class Centres:
     posterior: Scalars
     common: Scalars
     """What all centres err by together where the blur errs by 1σ, with its sign [full-frame px]."""
+    drawn: Scalars
+    """What uneven light draws it by in all frames alike, 1σ [full-frame px]."""
     rough: Scalars
     """Roughness of the surface from scan line to scan line [full-frame px]."""
     blur_shift: Scalars
@@ -190,7 +192,7 @@ def _learnt(lines: ScanLines, count: int, shape: StripeShape | None) -> tuple[Sc
     if shape is not None:
         rough = lines.stretch * shape.rough
         width = lines.stretch * shape.width / math.hypot(1.0, lines.slope)
-    return tuple(np.full(count, each) for each in (0.0, min(rough, _ROUGH), 0.0, width))
+    return tuple(np.full(count, each) for each in (0.0, 0.0, min(rough, _ROUGH), 0.0, width))
 
 
 def _fit_one_width(
@@ -242,6 +244,7 @@ def _without_blur(centres: Centres, *, width: float, blur: float) -> Centres:
         sigma=np.hypot(centres.sigma, noise),
         posterior=np.where(is_blur, _BLUR, 1.0) * centres.posterior,
         common=unknown,
+        drawn=slants.draw(width),
         blur_shift=added,
     )
 
@@ -267,13 +270,16 @@ def join_frames(near: Mapping[int, Centres], *, noise: Noise) -> Centres:
     at = np.concatenate(lines)
     straight = np.concatenate([group.position for group in groups]) - own.lines.even_wall(at)
     sigma = np.concatenate([group.sigma for group in groups])
-    alike = Alike.of(at, straight, sigma, starts, noise=noise)
+    drawn = np.concatenate([group.drawn for group in groups])
+    common = np.concatenate([group.common for group in groups])
+    alike = Alike.of(at, straight, np.hypot(sigma, common), drawn, starts, noise=noise)
     joined = join_centres(
         at,
         np.repeat(np.array(distances, float), np.diff(starts)),
         straight,
         sigma,
-        np.concatenate([group.common for group in groups]),
+        common,
+        alike.drawn * drawn,
         np.concatenate([group.rough for group in groups]),
         starts,
         first,
