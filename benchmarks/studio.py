@@ -67,10 +67,10 @@ def main() -> None:
 
 _NOTE = """
 Chromium without a screen draws by the processor and clicks through the studio: photographs of a
-board from a stream, the camera, photographs of the laser's line, the laser, a dive, and a ball
-measured. Boards, lines and the dive (c = 1.5 /m) are simulated, and come as H.264 by RTP over the
-loopback interface; the commands are given the pictures that the streams were made of. The time
-depends on what else the machine does.
+board from a stream, the camera, photographs of the laser's line, the laser, the check on the same
+photographs, a dive, and a ball measured. Boards, lines and the dive (c = 1.5 /m) are simulated, and
+come as H.264 by RTP over the loopback interface; the commands are given the pictures that the
+streams were made of. The time depends on what else the machine does.
 """
 
 
@@ -92,6 +92,7 @@ def _click(made: Path, work: Path, pictures: Path | None) -> dict:
         for step, stream in (("camera", "boards"), ("laser", "lines")):
             _photograph(page, step, stream, streams)
             _calibrate(page, step)
+        _check(page)
         _dive(page, streams)
         radius = _measure(page, work)
         minutes = (time.monotonic() - began) / 60
@@ -137,6 +138,16 @@ def _calibrate(page, step: str) -> None:
     _typed(page, f"murkscan calibrate {step} boards-{step} ")
     page.get_by_role("button", name="Calibrate", exact=True).click()
     _wait_for(page, f"calibrate {step}")
+
+
+def _check(page) -> None:
+    """Measure the board's squares by the laser's line; the board was typed before."""
+    page.evaluate("location.hash = 'calibrate/check'")
+    page.locator("select[name=source]").select_option("boards-laser")
+    _typed(page, f"murkscan calibrate check boards-laser --board 9x6 --square-mm {SQUARE}")
+    page.get_by_role("button", name="Calibrate", exact=True).click()
+    _wait_for(page, "calibrate check")
+    page.get_by_text("side of a square").wait_for(timeout=PATIENCE)
 
 
 def _dive(page, streams: Streams) -> None:

@@ -7,10 +7,10 @@ import { card } from "./rig.js";
 import { sightCard } from "./sight.js";
 
 const BOARD = [
-  { key: "count", label: "Number of boards", kind: "number", value: 15, step: 1, min: 4, local: true, hint: "photographs that you mean to take" },
-  { key: "wide", label: "Corners wide", kind: "number", value: 9, step: 1, min: 3, local: true },
-  { key: "high", label: "Corners high", kind: "number", value: 6, step: 1, min: 3, local: true },
-  { key: "square-mm", label: "Size of a square", unit: "mm", kind: "number", value: 25 },
+  { key: "count", label: "Number of boards", kind: "number", value: 15, step: 1, min: 4, local: true, hint: "photographs that you mean to take", everywhere: true },
+  { key: "wide", label: "Corners wide", kind: "number", value: 9, step: 1, min: 3, local: true, everywhere: true },
+  { key: "high", label: "Corners high", kind: "number", value: 6, step: 1, min: 3, local: true, everywhere: true },
+  { key: "square-mm", label: "Size of a square", unit: "mm", kind: "number", value: 25, everywhere: true },
 ];
 const MARGIN = { key: "margin-mm", label: "Blank paper beyond the squares", placeholder: "120,80,60,60", hint: "left, right, top, bottom, in mm", more: true };
 const LASER = { key: "laser", label: "Number of the laser", value: "0", more: true };
@@ -91,7 +91,7 @@ export function calibratePage(page, [named]) {
     if (key === last) return;
     fill(form.input(photos), folders);
     if (step !== "camera") fill(form.input("rig"), rigs);
-    else if (rigs.length && !last) form.input("rig").value = rigs[0];
+    else if (rigs.length && !last && form.input("rig").value === "rig.toml") form.input("rig").value = rigs[0];
     if (step === "mount") fill(form.input("poses"), logs);
     last = key;
     form.write();

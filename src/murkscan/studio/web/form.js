@@ -5,8 +5,10 @@ import { button, make, note } from "./dom.js";
 
 // What somebody typed into a form and has not begun, for when its page is shown again.
 const typed = new Map();
+const everywhere = new Map();
 
-// fields: { key, label, kind: number | text | select | switch, value, options, unit, hint, more, pick, required }
+// fields: { key, label, kind: number | text | select | switch, value, options, unit, hint, more, pick, required,
+// everywhere: typed once, it holds in each form that asks for it }
 export function commandForm({ page, command, fields, run = "Begin", values: fixed = {}, onchange = () => {} }) {
   const nameOf = () => (typeof command === "function" ? command(read()) : command);
   const inputs = new Map(fields.map((field) => [field.key, input(field)]));
@@ -25,8 +27,9 @@ export function commandForm({ page, command, fields, run = "Begin", values: fixe
   const own = [page, typeof command === "string" ? command : "", ...inputs.keys(), JSON.stringify(fixed)].join(" ");
   const left = typed.get(own) ?? new Map();
   typed.set(own, left);
-  for (const [key, value] of left) give(inputs.get(key), value);
-  element.addEventListener("input", ({ target }) => left.set(target.name, target.type === "checkbox" ? target.checked : target.value));
+  const placeOf = (key) => (fields.find((field) => field.key === key)?.everywhere ? everywhere : left);
+  for (const [key, element] of inputs) if (placeOf(key).has(key)) give(element, placeOf(key).get(key));
+  element.addEventListener("input", ({ target }) => placeOf(target.name).set(target.name, target.type === "checkbox" ? target.checked : target.value));
 
   function read() {
     const values = { ...fixed };
