@@ -91,7 +91,7 @@ export function calibratePage(page, [named]) {
     if (key === last) return;
     fill(form.input(photos), folders);
     if (step !== "camera") fill(form.input("rig"), rigs);
-    else if (rigs.length && !last && form.input("rig").value === "rig.toml") form.input("rig").value = rigs[0];
+    else if (rigs.length && !last) form.offer("rig", rigs[0]);
     if (step === "mount") fill(form.input("poses"), logs);
     last = key;
     form.write();

@@ -27,7 +27,5 @@ export function describeCard() {
   form.also = ({ kind, far }) => (kind ? { [kind]: far } : {});
   const element = make("section", { className: "card wide" }, make("h2", { textContent: "A rig by what is known of it" }),
     note("What a data sheet, a ruler and a thermometer say is enough to plan with, and for a window’s calibration to begin from. Leave empty what is not known; what was calibrated stays."), form);
-  // What somebody typed stays, whatever the folder shows meanwhile.
-  let given = FIELDS[0].value;
-  return { element, name: (rig) => { if (rig && form.input("rig").value === given) form.set("rig", given = rig); } };
+  return { element, name: (rig) => form.offer("rig", rig) };
 }

@@ -83,6 +83,8 @@ export function commandForm({ page, command, fields, run = "Begin", values: fixe
   element.write = write;
   element.read = read;
   element.set = (key, value) => { inputs.get(key).value = value; write(); };
+  // What somebody typed stays, whatever is offered meanwhile.
+  element.offer = (key, value) => { if (!placeOf(key).has(key) && inputs.get(key).value !== value) element.set(key, value); };
   element.input = (key) => inputs.get(key);
   element.suggest = (key, names) => inputs.get(key)?.list?.replaceChildren(...names.map((name) => make("option", { value: name })));
   queueMicrotask(write);
@@ -91,7 +93,7 @@ export function commandForm({ page, command, fields, run = "Begin", values: fixe
 
 function give(element, value) {
   if (element.type === "checkbox") element.checked = value;
-  else if (!element.options || [...element.options].some((option) => option.value === value)) element.value = value;
+  else element.value = element.dataset.typed = value; // a choice that is not there yet waits for its list
 }
 
 function input({ key, kind = "text", value = "", options = [], step = "any", min, max, placeholder = "", required = false }) {
@@ -106,11 +108,19 @@ function input({ key, kind = "text", value = "", options = [], step = "any", min
 
 export function fill(select, options, value) {
   const pairs = options.map((option) => (Array.isArray(option) ? option : [option, option]));
-  const before = value ?? select.value;
+  const before = value ?? (select.value || select.dataset.typed);
   if (!pairs.length) pairs.push(["", "none in this folder yet"]);
   select.replaceChildren(...pairs.map(([key, text]) => make("option", { value: key, textContent: text })));
   if (pairs.some(([key]) => key === before)) select.value = before;
   return select;
+}
+
+// The name, or the first with a number behind it, that nothing in the folder has.
+export function freeName(name, taken) {
+  for (let number = 1; ; number += 1) {
+    const tried = number > 1 ? `${name}-${number}` : name;
+    if (!taken.includes(tried)) return tried;
+  }
 }
 
 function rowOf({ label, unit, hint, list, pick }, element, write) {

@@ -2,7 +2,7 @@
 
 import { addressOf, ask, listen, order, question, refresh, studio } from "./ask.js";
 import { button, keep, make, note } from "./dom.js";
-import { commandForm, fill } from "./form.js";
+import { commandForm, fill, freeName } from "./form.js";
 import { gapMap } from "./gap_map.js";
 import { clock, otherGauges, steeringGauges, warningsOf } from "./gauges.js";
 import { motionFields, motionOf, showMotion } from "./motion.js";
@@ -151,11 +151,12 @@ function startForm() {
   let last = "";
   return {
     element: make("section", { className: "card" }, make("h2", { textContent: "A new dive" }), form),
-    sync({ found: { rigs, recordings, logs } }) {
-      const key = JSON.stringify([rigs, recordings, logs]);
+    sync({ found: { rigs, recordings, logs, scans, dives } }) {
+      const key = JSON.stringify([rigs, recordings, logs, scans, dives]);
       if (key === last) return;
       last = key;
       fill(form.input("rig"), rigs);
+      form.offer("out", freeName("dive", [...scans, ...dives]));
       form.suggest("source", recordings);
       form.suggest("log", logs);
       form.write();

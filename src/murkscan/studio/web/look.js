@@ -2,7 +2,7 @@
 
 import { addressOf, ask, listen, order, question, refresh, studio } from "./ask.js";
 import { button, keep, make, note, table } from "./dom.js";
-import { commandForm, fill, givePlace, uploader } from "./form.js";
+import { commandForm, fill, freeName, givePlace, uploader } from "./form.js";
 import { measureForms } from "./measures.js";
 import { motionFields, motionOf, showMotion } from "./motion.js";
 
@@ -182,10 +182,12 @@ function scanForm() {
     element: make("section", { className: "card" }, make("h2", { textContent: "A new scan" }), form,
       uploader({ label: "Bring a recording, a log or a drawing", accept: ".mkv,.mp4,.mov,.avi,.ts,.mcap,.bag,.tlog,.csv,.txt,.stl,.obj,.ply,.glb", nameOf: (file) => file.name })),
     sync(state) {
-      const { recordings, rigs, logs } = state.found;
-      if (JSON.stringify([recordings, rigs, logs]) === last) return;
-      last = JSON.stringify([recordings, rigs, logs]);
+      const { recordings, rigs, logs, scans } = state.found;
+      const key = JSON.stringify([recordings, rigs, logs, scans]);
+      if (key === last) return;
+      last = key;
       fill(form.input("recording"), recordings);
+      form.offer("out", freeName("scan", scans));
       fill(form.input("rig"), rigs);
       form.suggest("log", logs);
       form.write();
@@ -218,7 +220,8 @@ function mergeForm() {
       if (JSON.stringify(scans) === last) return;
       last = JSON.stringify(scans);
       places.forEach((key, k) => fill(form.input(key), k < 2 ? scans : [["", "–"], ...scans]));
-      if (scans.length > 1) form.input("second").value = scans[1];
+      if (scans.length > 1) form.offer("second", scans[1]);
+      form.offer("out", freeName("merged", scans));
       for (const one of after) { fill(one.input("out"), scans); one.write(); }
       form.write();
     },
