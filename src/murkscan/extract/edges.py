@@ -45,6 +45,7 @@ def weigh_edges(
     seen = lines.binned(matched.binning)
     templates, parts = _templates(matched.width, len(matched.template) // 2)
     places = np.rint(seen.from_image(positions)).astype(int)
+    line = np.ascontiguousarray(line)  # loops are compiled anew for each layout
     stripe, edge = answer_best(seen.signal, line, places, templates, parts).T
     power = heights**2 / (1.0 + heights**2 / _UNEVEN)
     return np.minimum(0.5 * power * (1.0 - (edge / np.maximum(stripe, 1e-6)) ** 2), 0.0)
