@@ -16,9 +16,7 @@ from murkscan.capture.chunks import cut_chunks
 from murkscan.geometry.mesh_distance import distance_to_mesh
 from murkscan.io.mesh_files import load_mesh
 from murkscan.project import EXTRACT, TRIANGULATE
-from murkscan.simulate import parse_scene
 from murkscan.survey.cloud import build_cloud
-from murkscan.survey.demo import Errors, run_demo
 from murkscan.survey.extract import extract_recording
 from murkscan.survey.motion import follow_motion
 from murkscan.survey.scan import begin_scan
@@ -194,8 +192,6 @@ def test_a_recording_without_a_stripe_gives_an_empty_cloud_and_says_so(hull, tmp
 
 
 def test_a_recording_of_another_camera_is_refused(hull, tmp_path):
-    from dataclasses import replace
-
     recording, rig = _open(hull)
     other = replace(rig, camera=replace(rig.camera, size=(640, 480)))
     with pytest.raises(ms.InputError, match="360 × 288"):
@@ -300,32 +296,9 @@ def test_a_loss_across_parts_is_counted_once(halo):
     assert owned == [index for index in range(150) if index not in lost]
 
 
-def test_the_demo_s_model_lies_on_the_true_hull_where_the_paper_s_does_not(tmp_path, monkeypatch):
-    """The first quarter of the demo's recording stands for the whole."""
-
-    def parse_quarter(*source):
-        scene = parse_scene(*source)
-        return replace(scene, times=scene.times[: len(scene.times) // 4])
-
-    monkeypatch.setattr("murkscan.survey.demo.parse_scene", parse_quarter)
-    ours, paper = run_demo(tmp_path)
-    assert ours.errors.count > 6_000
-    # A pixel is 2.5 mm of depth there, and the rows of a field lie two pixels apart.
-    assert ours.errors.rms < 0.5e-3
-    assert ours.errors.false < 0.005 * ours.errors.count
-    # Most of what the threshold takes for the stripe is taken out of its cloud as outliers.
-    assert paper.errors.false > 0.01 * paper.errors.count
-    assert paper.errors.rms > 3 * ours.errors.rms
-    assert "the paper" in (tmp_path / "index.html").read_text("utf-8")
-
-
 def test_in_clear_air_a_scan_is_within_a_tenth_of_a_millimetre_of_the_truth(scanned, hull):
     truth = load_mesh(hull / "truth/mesh.ply")
     away = distance_to_mesh(scanned.load_cloud().points[::5], truth, within=0.01)
     assert np.isfinite(away).mean() > 0.99
     # Edges, where a pixel sees two surfaces, are left to the tail.
     assert np.median(away) < 1e-4
-
-
-def test_no_points_have_no_errors():
-    assert Errors.from_distances(np.zeros(0)).count == 0
