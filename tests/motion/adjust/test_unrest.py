@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from murkscan.motion.adjust.draws import draw_errors
 from murkscan.motion.adjust.first_path import first_path
 from murkscan.motion.adjust.log_terms import UNREST, Log
 from murkscan.motion.adjust.settings import AdjustSettings
@@ -40,8 +41,10 @@ def learn(path, accuracy, *, tied):
     layout = Layout.of(paths, [0, 1])
     logs = Log(0, Navigation(accuracy), layout, 0.0), Log(1, log, layout, 0.0)
     groups = [tie_all(paths, np.arange(0, DURATION, 0.04))] if tied else []
+    state = State(paths, np.zeros(layout.count))
     for _ in range(4):  # about as often as facets are paired
-        logs = learn_unrest(State(paths, np.zeros(layout.count)), logs, groups, SETTINGS)
+        errors = draw_errors(state, logs, groups, SETTINGS, count=8)
+        logs = learn_unrest(state, logs, errors, SETTINGS)
     return logs[0].unrest
 
 

@@ -20,7 +20,7 @@ from .first_path import first_path, fit_path
 from .legs import Leg, Pass, cut_legs
 from .log_terms import Log
 from .pairs import make_sides, pair_facets
-from .path import WIDTH, Path
+from .path import Path
 from .rough import MORE, Tiles, count_tiles, lay_roughly, may_meet
 from .settings import AdjustSettings
 from .solve import State, improve
@@ -31,6 +31,8 @@ from .unrest import learn_unrest
 
 _MODES = 64
 """Errors that are drawn to state the uncertainty: σ to one part in eleven."""
+_FEW = 8
+"""Errors that are drawn in a fine round: what they are asked is a mean over many moments."""
 _ENOUGH = 5
 """Tiles that agree before two passes count as laid on one another to a bump's width."""
 _BESIDE = 0.75
@@ -80,19 +82,13 @@ class Adjusted:
             number: Of the pass.
             times: When [s], strictly increasing.
         """
-        return self.paths[number].as_trajectory(times, self._errors_of(number, self.errors))
+        own = self.logs[number].layout.of_path(number, self.errors)
+        return self.paths[number].as_trajectory(times, own)
 
     def trajectory_as_logged(self, number: int, times: Scalars) -> Trajectory:
         """Compute the same by the logs alone; the arguments are those of `trajectory`."""
-        own = self._errors_of(number, self.errors_as_logged)
+        own = self.logs[number].layout.of_path(number, self.errors_as_logged)
         return self.as_logged[number].as_trajectory(times, own)
-
-    def _errors_of(
-        self, number: int, errors: Float[np.ndarray, "u m"]
-    ) -> Float[np.ndarray, "k 6 m"]:
-        layout = self.logs[number].layout
-        start, size = layout.starts[number], layout.sizes[number]
-        return errors[start : start + size].reshape(-1, WIDTH, errors.shape[1])
 
     def instrument_errors(self, number: int) -> dict[str, tuple[float, float]]:
         """Estimate the errors of a pass's instruments: biases, drifts, clock, the speed's factor.
@@ -146,7 +142,7 @@ def adjust_passes(
         )
         known += tiles.values()
     errors = draw_errors(state, logs, groups, settings, count=_MODES, as_seen=True)
-    blind, laid = find_blind(state, legs, logs, settings), compare_passes(state, legs)
+    blind, laid = find_blind(state, legs, logs, errors, settings), compare_passes(state, legs)
     scale = 1 / np.sqrt(_MODES)
     return Adjusted(
         state.paths, as_logged, state, logs, tuple(groups), scale * errors, scale * loose,
@@ -261,8 +257,10 @@ def _lay_finely(
         Where everything lies, the last ties, and the logs with the unrest that was seen.
     """
     groups: list[Ties] = []
+    errors = draw_errors(state, logs, found, settings, count=_FEW)
     for number in range(rounds):
-        sides = make_sides(legs, state.paths)
+        own = [log.layout.of_path(log.number, errors) for log in logs]
+        sides = make_sides(legs, state.paths, own)
         reach = max(8e-3 / 2**number, 1e-3)
         most = settings.ties if number < rounds - _FULL else _ALL
         groups = [
@@ -280,7 +278,8 @@ def _lay_finely(
         if not groups:
             break
         before, state = state, improve(state, logs, groups, settings, steps=3)
-        logs = learn_unrest(state, logs, groups, settings)
+        errors = draw_errors(state, logs, groups, settings, count=_FEW)
+        logs = learn_unrest(state, logs, errors, settings)
         moved = _change(before, state)
         tell(f"fine round {number}: {sum(map(len, groups))} ties, moved {moved * 1e3:.3f} mm")
         if moved < _SETTLED:

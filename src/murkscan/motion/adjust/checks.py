@@ -8,15 +8,14 @@ import numpy as np
 from jaxtyping import Float
 
 from ...types.arrays import Scalars
-from .legs import Leg, make_facets
+from .legs import Leg
 from .log_terms import Log
 from .pairs import make_sides
-from .rough import carry_to_vehicles, may_meet, tie_legs
+from .rough import carry_to_vehicles, make_reliefs, may_meet, tie_legs
 from .settings import AdjustSettings
 from .solve import State
 from .strays import SEAM, compare_legs
-from .ties import linearise
-from .tiles import make_relief
+from .ties import measure_aside
 
 _ROW = 0.3
 """Time up to which tiles lie in one row, beside one another [s]."""
@@ -61,24 +60,26 @@ def compare_passes(state: State, legs: Sequence[Leg]) -> Overlaps:
 
 
 def find_blind(
-    state: State, legs: Sequence[Leg], logs: Sequence[Log], settings: AdjustSettings
+    state: State,
+    legs: Sequence[Leg],
+    logs: Sequence[Log],
+    errors: Float[np.ndarray, "u m"],
+    settings: AdjustSettings,
 ) -> float:
     """Look for all tiles once more, nearby: how long there was relief, and nothing where it should.
 
     Returns:
         The longest stretch [s] in which tiles have relief and none of them lies on its like.
     """
-    reliefs = [make_relief(make_facets(leg, state.paths[leg.number])) for leg in legs]
+    reliefs = make_reliefs(legs, state, logs, errors)
     exact = np.zeros((logs[0].layout.count, 1))
     blind = 0.0
     for i, j in combinations(range(len(legs)), 2):
         if legs[i].number == legs[j].number:
             for ties, times in tie_legs(reliefs[i], reliefs[j], state, exact, settings, logs):
-                off = linearise(carry_to_vehicles(ties, state), state.paths).residuals.reshape(
-                    -1, 3
-                )
+                off = measure_aside(carry_to_vehicles(ties, state), state.paths)
                 pitch = max(legs[i].size, legs[j].size)
-                good = ties.time_a[::3][np.abs(off[:, :2]).max(axis=1, initial=0) < pitch]
+                good = ties.time_a[::3][np.abs(off).max(axis=1, initial=0) < pitch]
                 blind = max(blind, longest_without(np.unique(times), good))
     return blind
 

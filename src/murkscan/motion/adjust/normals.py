@@ -3,50 +3,72 @@
 import numpy as np
 from jaxtyping import Float
 
-from ...types.arrays import Directions, Indices, Scalars
+from ...types.arrays import Directions, Indices
 from .legs import Facets
+from .restless import fit_rows, keep_rows, share_of_signal
+
+Slopes = Float[np.ndarray, "n 2"]
+"""Along the way and across it."""
 
 _PATCH = 16
 """Cells of a patch, along and across, over which a surface counts as plain or rough as a whole."""
 _STEEPEST = 2.0
 """Most by which slopes are taken to be flattened: bumps of four cells."""
-_CERTAIN = 2.0
-"""How many times over the noise of normals a slope must stand to count."""
 
 
-def steady_normals(facets: Facets) -> tuple[Directions, Directions]:
+def steady_normals(
+    facets: Facets, made: Float[np.ndarray, "r 2"] | None = None
+) -> tuple[Directions, Directions]:
     """Compute normals without noise, and normals of patches.
 
     On a plain surface normals differ by noise only, and would seem to fix the shift along it: the
     share of a slope that noise explains is taken away (James and Stein, Estimation with quadratic
-    loss, 1961), patch by patch. On a rough one planes over some cells are flatter than what they
-    stand for, which is put right then.
+    loss, 1961), patch by patch and in each direction of its own: a seam has slopes across it, and
+    along it noise. On a rough one planes over some cells are flatter than what they stand for,
+    which is put right then.
+
+    Args:
+        facets: The leg.
+        made: Variance of the slopes, along the way and across it, that errors of the way may
+            have made of each row as a whole; None: of a way without errors.
     """
     patches = -(-facets.leg.num_columns // _PATCH)
     band = facets.row // _PATCH
     _, which = np.unique(band * patches + facets.column // _PATCH, return_inverse=True)
     count = np.bincount(which)
-    noise = np.bincount(which, facets.variance * facets.slope_variance.sum(axis=1)) / count
-    smooth = _smooth_normals(facets, which, noise / count)
-    off = facets.normals - smooth
-    seen = np.bincount(which, np.einsum("ni,ni->n", off, off)) / count
-    steady = smooth + _steepen(facets, smooth, _signal(seen, noise)[which, None] * off)
+    noise = facets.variance[:, None] * facets.slope_variance
+    smooth = _smooth_normals(facets, which, np.bincount(which, noise.sum(axis=1)) / count**2)
+    off = np.einsum("nki,ni->nk", facets.axes, facets.normals - smooth)
+    common = fit_rows(facets, off)
+    of_rows = keep_rows(facets, common, noise, made)
+    steady = _keepshare_of_signal(off - common, noise, which) + of_rows
+    rough = np.einsum("nk,nki->ni", steady, facets.axes)
+    steep = smooth + _steepen(facets, smooth, rough)
     return (
-        steady / np.linalg.norm(steady, axis=1, keepdims=True),
+        steep / np.linalg.norm(steep, axis=1, keepdims=True),
         smooth / np.linalg.norm(smooth, axis=1, keepdims=True),
     )
 
 
-def _signal(seen: Scalars, noise: Scalars) -> Scalars:
-    """Give the share of mean squares that is no noise, with certainty."""
-    return np.asarray(np.clip(1 - _CERTAIN * noise / np.maximum(seen, 1e-300), 0, 1))
+def _keepshare_of_signal(slopes: Slopes, noise: Slopes, patch: Indices) -> Slopes:
+    """Take the share of slopes away that noise explains, in each patch along both its own axes."""
+    count = np.bincount(patch)
+    level = np.stack([np.bincount(patch, n) for n in noise.T], axis=1) / count[:, None]
+    scale = np.sqrt(np.maximum(level, 1e-300))
+    white = slopes / scale[patch]
+    products = np.einsum("ni,nj->nij", white, white).reshape(-1, 4)
+    seen = np.stack([np.bincount(patch, p) for p in products.T], axis=1) / count[:, None]
+    squares, axes = np.linalg.eigh(seen.reshape(-1, 2, 2))
+    keep = np.einsum("pik,pk,pjk->pij", axes, share_of_signal(squares, np.ones_like(squares)), axes)
+    return np.asarray(np.einsum("nij,nj->ni", keep[patch], white) * scale[patch])
 
 
 def _smooth_normals(facets: Facets, patch: Indices, noise: Float[np.ndarray, " p"]) -> Directions:
     """Give each facet the normal of its patch: of a surface bent evenly, and what stands out of it.
 
-    What all patches side by side have in common is left out: a vehicle that heaves or pitches makes
-    the like of a plain surface, and would be held along it by its own errors.
+    What patches side by side have in common, or what grows evenly from one to the next, is left
+    out: a vehicle that heaves, pitches or rolls makes the like of a plain surface, and would be
+    held along it by its own errors.
 
     Args:
         facets: The leg.
@@ -65,8 +87,10 @@ def _smooth_normals(facets: Facets, patch: Indices, noise: Float[np.ndarray, " p
     bent = np.linalg.lstsq(weights * middles, weights * means, rcond=None)[0]
     off = means - middles @ bent
     band = (middles[:, 1] // _PATCH).astype(np.int64)
+    aside = (middles[:, 2] - mean(middles, band)[band, 2])[:, None]
     off -= mean(off, band)[band]
-    stands_out = _signal(np.einsum("ni,ni->n", off, off), noise)
+    off -= aside * (mean(aside * off, band) / np.maximum(mean(aside**2, band), 1e-12))[band]
+    stands_out = share_of_signal(np.einsum("ni,ni->n", off, off), noise)
     return np.asarray(places @ bent + (stands_out[:, None] * off)[patch])
 
 

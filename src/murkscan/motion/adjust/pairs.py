@@ -11,8 +11,9 @@ from ...types.arrays import Directions, Indices, Mask, Points, Scalars
 from .legs import Facets, Leg, make_facets
 from .normals import steady_normals
 from .path import Path
+from .relief import make_heights
+from .restless import slopes_of_errors
 from .ties import Ties
-from .tiles import make_heights
 
 Rows = Bool[np.ndarray, "rows"]
 """Which rows of a leg's cells."""
@@ -64,14 +65,30 @@ class Side:
         return times, np.einsum("nji,nj->ni", poses.rotations, places - poses.positions)
 
 
-def make_sides(legs: Sequence[Leg], paths: Sequence[Path]) -> list[Side]:
-    """Fit each leg's facets where its path lies, and make them ready to be paired."""
-    return [make_side(make_facets(leg, path), path) for leg in legs for path in [paths[leg.number]]]
+def make_sides(
+    legs: Sequence[Leg],
+    paths: Sequence[Path],
+    errors: Sequence[Float[np.ndarray, "k 6 m"]] | None = None,
+) -> list[Side]:
+    """Fit each leg's facets where its path lies, and make them ready to be paired.
+
+    Args:
+        legs: All legs.
+        paths: All paths.
+        errors: Some that the control values of each path may have, drawn; None: none.
+    """
+    sides = []
+    for leg in legs:
+        path = paths[leg.number]
+        facets = make_facets(leg, path)
+        made = None if errors is None else slopes_of_errors(facets, path, errors[leg.number])
+        sides.append(make_side(facets, path, made))
+    return sides
 
 
-def make_side(facets: Facets, path: Path) -> Side:
-    """Make a leg's facets ready to be paired, where its path lies."""
-    directions, smooth = steady_normals(facets)
+def make_side(facets: Facets, path: Path, made: Float[np.ndarray, "r 2"] | None = None) -> Side:
+    """Make a leg's facets ready to be paired, where its path lies; `made` as `steady_normals`."""
+    directions, smooth = steady_normals(facets, made)
     heights = make_heights(facets)
     relief = float(np.var(heights))
     tree = cKDTree(facets.points)

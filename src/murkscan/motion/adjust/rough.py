@@ -12,10 +12,11 @@ from .doubt import Doubt
 from .draws import draw_errors
 from .legs import Facets, Leg, leg_direction, make_facets
 from .log_terms import Log
+from .relief import Relief, make_relief
 from .settings import AdjustSettings
 from .solve import State, improve
 from .ties import Ties, as_seen
-from .tiles import Relief, make_relief, tie_tiles
+from .tiles import tie_tiles
 
 Tiles = dict[tuple[int, int], Ties]
 """Ties of tiles of one leg that were found in another, by the places of both among the legs."""
@@ -43,8 +44,8 @@ def lay_roughly(
     """
     before = count_tiles(found)
     for _ in range(settings.rounds):
-        reliefs = [make_relief(make_facets(leg, state.paths[leg.number])) for leg in legs]
         errors = draw_errors(state, logs, [*known, *found.values()], settings, count=_DRAWS)
+        reliefs = make_reliefs(legs, state, logs, errors)
         found = {
             (i, j): carry_to_vehicles(ties, state)
             for i, j in combinations(range(len(legs)), 2)
@@ -58,6 +59,17 @@ def lay_roughly(
             break
         before = count
     return state, found
+
+
+def make_reliefs(
+    legs: Sequence[Leg], state: State, logs: Sequence[Log], errors: Float[np.ndarray, "u m"]
+) -> list[Relief]:
+    """Make the relief of each leg where its path lies."""
+    found = []
+    for leg in legs:
+        path, own = state.paths[leg.number], logs[0].layout.of_path(leg.number, errors)
+        found.append(make_relief(make_facets(leg, path), path, own))
+    return found
 
 
 def count_tiles(found: Tiles) -> int:
@@ -83,11 +95,10 @@ def tie_legs(
         return []
     leg, layout = a.facets.leg, logs[0].layout
     one, other = leg.number, b.facets.leg.number
-    shares = [
-        errors[start : start + size].reshape(-1, 6, errors.shape[1])
-        for start, size in zip(layout.starts, layout.sizes, strict=True)
-    ]
-    doubt = Doubt(state.paths[one], state.paths[other], shares[one], shares[other], settings.reach)
+    doubt = Doubt(
+        state.paths[one], state.paths[other],
+        layout.of_path(one, errors), layout.of_path(other, errors), settings.reach,
+    )  # fmt: skip
     forward = np.tile(leg_direction(state.paths[one], leg.row_times), (len(leg.row_times), 1))
     return [tie_tiles(a, b, settings.tile, doubt, forward)]
 

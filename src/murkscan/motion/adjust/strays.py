@@ -9,10 +9,10 @@ from jaxtyping import Bool, Float
 from ...types.arrays import Mask
 from .legs import Leg
 from .pairs import Side, make_sides, measure_apart
+from .relief import FLATTEST
 from .rough import Tiles
 from .solve import State
-from .ties import Ties, linearise
-from .tiles import FLATTEST
+from .ties import Ties, measure_aside
 
 SEAM = 20e-3
 """Distance up to which legs are looked for in each other's place [m]."""
@@ -80,6 +80,6 @@ def _are_stray(ties: Ties, state: State, a: Side, b: Side) -> Mask:
     if not (lies.is_stray.any() and len(ties)):
         return np.zeros(len(ties), bool)
     nearest = np.abs(lies.times - ties.time_a[::3, None]).argmin(axis=1)
-    off = linearise(ties, state.paths).residuals.reshape(-1, 3)[:, :2]
+    off = measure_aside(ties, state.paths)
     is_here = np.abs(off).max(axis=1) < _HERE * max(a.facets.leg.size, b.facets.leg.size)
     return np.repeat(lies.is_stray[nearest] & is_here, 3)

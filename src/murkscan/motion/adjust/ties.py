@@ -17,6 +17,8 @@ from .path import WIDTH, Path, Poses
 from .spline import Weights
 
 _BLOCK = 2 * 4 * WIDTH
+OPEN = 1.0
+"""Variance of a tie that says nothing [m²]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,6 +90,12 @@ def linearise(ties: Ties, paths: Sequence[Path]) -> LinearTies:
     )
     residuals = place_a - place_b - ties.offset
     return LinearTies(residuals, slopes_a, slopes_b, at_a.weights, at_b.weights, first_a, first_b)
+
+
+def measure_aside(ties: Ties, paths: Sequence[Path]) -> Float[np.ndarray, "k 2"]:
+    """Give how far tiles lie aside of where they belong, along axes that they tell [m]."""
+    off = np.where(ties.variance < OPEN, linearise(ties, paths).residuals, 0.0)
+    return off.reshape(-1, 3)[:, :2]
 
 
 def _moments(number: Indices, times: Scalars, paths: Sequence[Path]) -> tuple[Poses, Indices]:

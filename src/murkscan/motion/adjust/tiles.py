@@ -8,70 +8,30 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
-from scipy.ndimage import uniform_filter
 from scipy.spatial import cKDTree
 
 from ..._kernels.tiles import correlate, draw_relief
 from ...types.arrays import Indices, Points, Scalars, Vector
 from .doubt import Doubt
 from .legs import Facets
-from .ties import Ties
+from .peaks import find_peak
+from .relief import FLATTEST, Relief
+from .ties import OPEN, Ties
 
-_SMOOTH = 0.06
-"""Size over which a leg's surface is its own mean [m]: below it, relief."""
-_SCORE = 0.5
-"""Correlation below which nothing has been found."""
-_CLEARER = 0.12
-"""By how much the second best must lie below the best."""
 _FILLED = 0.4
 """Share of a tile that must lie on the other leg."""
 _FEWEST = 40
 """Facets below which a tile is none."""
-FLATTEST = 0.05e-3
-"""RMS of a relief below which there is nothing to find [m]."""
 _STRETCHES = (1.0, 0.8, 1.25, 0.65, 1.55)
 """Lengths along the way that a tile may have, in the one it seems to have, in the order in which
 they are tried: a speed that is not known is off by so much."""
 _FAR = 6.0
 """Pixels beyond which tiles are looked for in pixels of twice the size."""
-_SIGMA_ASIDE = 0.35
-"""Standard deviation of a found place, in pixels of a relief's image."""
+_VAGUE = 1.5
+"""Standard deviation, in pixels, from which a relief does not tell its place along an axis: bumps
+that wide lie on one another anyhow, and the length of a seam shows no end."""
 _SIGMA_OFF = 0.5e-3
 """Standard deviation of a found distance along the normal [m]."""
-
-
-@dataclass(frozen=True, eq=False)
-class Relief:
-    """A leg's facets, each with how far it stands out of the leg's own smooth surface."""
-
-    facets: Facets
-    tree: cKDTree
-    heights: Scalars
-    """[m]"""
-
-
-def make_relief(facets: Facets) -> Relief:
-    """Make a leg's relief."""
-    return Relief(facets, cKDTree(facets.points), make_heights(facets))
-
-
-def make_heights(facets: Facets) -> Scalars:
-    """Compute how far each facet stands out of its leg's own smooth surface [m]."""
-    leg = facets.leg
-    shape = (len(leg.row_times), leg.num_columns)
-    window = 2 * round(_SMOOTH / leg.size / 2) + 1
-
-    def smooth(values: Scalars) -> Scalars:
-        image = np.zeros(shape)
-        image[facets.row, facets.column] = values
-        return uniform_filter(image, window, mode="constant")[facets.row, facets.column]
-
-    share = smooth(np.ones(len(facets)))
-    origin = facets.points.mean(axis=0)
-    mean = np.stack([smooth(p) for p in (facets.points - origin).T], axis=1) / share[:, None]
-    normal = np.stack([smooth(n) for n in facets.normals.T], axis=1)
-    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-    return np.einsum("ni,ni->n", facets.points - origin - mean, normal)
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,9 +43,28 @@ class _Found:
     frame: Float[np.ndarray, "3 3"]
     """Rows: along the way, across it, the normal."""
     shift: Vector
-    """From where the tile lies to where it belongs [m]."""
-    score: float
+    """From where the tile lies to where it belongs, along these [m]."""
+    spread: Float[np.ndarray, "2 2"]
+    """Covariance of the shift along the first two [m²]."""
+    vague: float
+    """Variance from which it does not tell where the tile belongs [m²]."""
     time: float
+
+    @property
+    def told(self) -> Vector:
+        """Give the shift, with NaN along axes along which the relief does not tell it."""
+        is_told = np.append(np.diag(self.spread) < self.vague, True)
+        return np.where(is_told, self.shift, np.nan)
+
+    def as_axes(self) -> tuple[Float[np.ndarray, "3 3"], Vector]:
+        """Give three directions in the world along which it errs by itself, and its variances.
+
+        A seam ties one direction, a corner all.
+        """
+        variance, axes = np.linalg.eigh(self.spread)
+        variance = np.where(variance < self.vague, variance, OPEN)
+        directions = np.vstack([axes.T @ self.frame[:2], self.frame[2:]])
+        return directions, np.append(variance, _SIGMA_OFF**2)
 
 
 def tie_tiles(
@@ -117,7 +96,7 @@ def tie_tiles(
         place = next(filter(None, (_find(b, pair, stretch) for stretch in _STRETCHES)), None)
         if place is not None:
             found.append(place)
-    ties = _as_ties(a.facets, b, _consistent(found, a.facets.leg.size), a.facets.leg.size)
+    ties = _as_ties(a.facets, b, _consistent(found, a.facets.leg.size))
     return ties, np.array(looked_for)
 
 
@@ -166,7 +145,7 @@ def _lay_side_by_side(
     frame = _frame(facets.normals[which].mean(axis=0), forward[facets.row[which[0]]])
     half = float(np.hypot(*tile)) / 2
     nearest = b.tree.query(centre, distance_upper_bound=half + doubt.most)[1]
-    if nearest == b.tree.n or float(np.std(a.heights[which])) < FLATTEST:
+    if nearest == b.tree.n or a.is_flat(which):
         return None
     reach = doubt.reach(
         centre,
@@ -211,16 +190,16 @@ def _find(b: Relief, pair: _Pair, stretch: float) -> _Found | None:
     filled = np.isfinite(small)
     if filled.sum() < _FEWEST / 2 or np.nanstd(small) < FLATTEST:
         return None
-    peak = _peak(correlate(small, large, int(_FILLED * filled.sum())))
+    peak = find_peak(correlate(small, large, int(_FILLED * filled.sum())), int(filled.sum()))
     if peak is None:
         return None
-    moved, score = (np.array(peak[:2]) - margin) * pitch, peak[2]
+    moved = (peak.place - margin) * pitch
     off = _offset_along_normal(own, pair.other, moved, pitch)
     if off is None:
         return None
-    frame = pair.frame
-    shift = moved[0] * frame[0] + moved[1] * frame[1] + off * frame[2]
-    return _Found(pair.which, frame, shift, score, pair.time)
+    vague = (_VAGUE * pitch) ** 2
+    spread = pitch**2 * peak.spread
+    return _Found(pair.which, pair.frame, np.append(moved, off), spread, vague, pair.time)
 
 
 def _frame(normal: Vector, forward: Vector) -> Float[np.ndarray, "3 3"]:
@@ -228,34 +207,6 @@ def _frame(normal: Vector, forward: Vector) -> Float[np.ndarray, "3 3"]:
     along = forward - (forward @ normal) * normal
     along /= max(float(np.linalg.norm(along)), 1e-12)
     return np.stack([along, np.cross(normal, along), normal])
-
-
-def _peak(scores: Float[np.ndarray, "h w"]) -> tuple[float, float, float] | None:
-    """Find the best place to a fraction of a pixel; None where it is not clear or at the rim."""
-    if not np.isfinite(scores).any():
-        return None
-    i, j = np.unravel_index(int(np.nanargmax(scores)), scores.shape)
-    best = float(scores[i, j])
-    if best < _SCORE or not (0 < i < scores.shape[0] - 1 and 0 < j < scores.shape[1] - 1):
-        return None
-    others = scores.copy()
-    others[max(i - 3, 0) : i + 4, max(j - 3, 0) : j + 4] = np.nan
-    if np.isfinite(others).any() and np.nanmax(others) > best - _CLEARER:
-        return None
-    around = scores[i - 1 : i + 2, j - 1 : j + 2]
-    if not np.isfinite(around).all():
-        return None
-    return (
-        float(i + _vertex(*around[:, 1])),
-        float(j + _vertex(*around[1])),
-        best,
-    )
-
-
-def _vertex(before: float, here: float, after: float) -> float:
-    """Give where the parabola through three scores is highest."""
-    bend = before - 2 * here + after
-    return 0.0 if bend >= 0 else float(np.clip(0.5 * (before - after) / bend, -0.5, 0.5))
 
 
 def _offset_along_normal(
@@ -274,40 +225,37 @@ def _consistent(found: list[_Found], pitch: float) -> list[_Found]:
     if len(found) < 3:
         return []
     times = np.array([one.time for one in found])
-    shifts = np.array([one.shift for one in found])
+    shifts = np.array([one.told for one in found])
     kept = []
     for i, one in enumerate(found):
         near = np.argsort(np.abs(times - times[i]), kind="stable")[1:8]
-        middle = np.median(shifts[near], axis=0)
-        spread = 1.5 * np.median(np.abs(shifts[near] - middle).max(axis=1))
-        if np.abs(one.shift - middle).max() <= max(3 * pitch, 3 * spread):
+        middle = [
+            np.median(s[np.isfinite(s)]) if np.isfinite(s).any() else 0 for s in shifts[near].T
+        ]
+        # Along an axis that a tile does not tell it agrees with all.
+        off = np.nan_to_num(np.abs(shifts - np.array(middle))).max(axis=1)
+        if off[i] <= max(3 * pitch, 3 * 1.5 * float(np.median(off[near]))):
             kept.append(one)
     return kept
 
 
-def _as_ties(facets: Facets, b: Relief, found: list[_Found], pitch: float) -> Ties:
-    """Tie each tile's middle to where it belongs: along the way, across it, and the normal."""
+def _as_ties(facets: Facets, b: Relief, found: list[_Found]) -> Ties:
+    """Tie each tile's middle to where it belongs: along two axes of the surface, and the normal."""
     count = 3 * len(found)
     leg, other = facets.leg, b.facets.leg
     time_a, time_b = np.empty(count), np.empty(count)
-    points, matched = np.empty((count, 3)), np.empty((count, 3))
-    rows = np.empty(count, np.int64)
+    points, matched, directions = (np.empty((count, 3)) for _ in range(3))
+    variance = np.empty(count)
     for k, one in enumerate(found):
         centre = facets.points[one.which].mean(axis=0)
-        nearest = int(b.tree.query(centre + one.shift)[1])
+        there = centre + one.shift @ one.frame
+        nearest = int(b.tree.query(there)[1])
         into = slice(3 * k, 3 * k + 3)
-        time_a[into], points[into] = one.time, centre
-        rows[into], matched[into] = b.facets.row[nearest], centre + one.shift
+        time_a[into], points[into], matched[into] = one.time, centre, there
         time_b[into] = other.row_times[b.facets.row[nearest]]
-    sigma = np.array([_SIGMA_ASIDE * pitch, _SIGMA_ASIDE * pitch, _SIGMA_OFF])
+        directions[into], variance[into] = one.as_axes()
     return Ties(
-        np.full(count, leg.number),
-        time_a,
-        points,
-        np.full(count, other.number),
-        time_b,
-        matched,
-        np.concatenate([one.frame for one in found]) if found else np.zeros((0, 3)),
-        np.zeros(count),
-        np.tile(sigma**2, len(found)),
-    )
+        np.full(count, leg.number), time_a, points,
+        np.full(count, other.number), time_b, matched,
+        directions, np.zeros(count), variance,
+    )  # fmt: skip

@@ -59,6 +59,11 @@ class Layout:
         shared = len(SHARED) * (max(self.instruments) + 1)
         return self.num_of_paths + shared + len(OWN) * len(self.sizes)
 
+    def of_path(self, number: int, errors: Float[np.ndarray, "u m"]) -> Float[np.ndarray, "k 6 m"]:
+        """Pick what some errors of all unknowns are of a pass's control values."""
+        start, size = self.starts[number], self.sizes[number]
+        return errors[start : start + size].reshape(-1, WIDTH, errors.shape[1])
+
     def shared(self, number: int, name: str) -> int:
         """Give where an error of a pass's instruments stands."""
         return self.num_of_paths + len(SHARED) * self.instruments[number] + SHARED.index(name)

@@ -12,16 +12,16 @@ from .path import WIDTH, Path
 from .settings import AdjustSettings
 from .solve import State
 from .spline import evaluate
-from .ties import Ties
 
 _WITHIN = 1e-9
 """Rounding of a path's end [s]."""
-_DRAWS = 8
-"""Errors that are drawn: each is of a hundred accelerations or more."""
 
 
 def learn_unrest(
-    state: State, logs: Sequence[Log], groups: Sequence[Ties], settings: AdjustSettings
+    state: State,
+    logs: Sequence[Log],
+    errors: Float[np.ndarray, "u m"],
+    settings: AdjustSettings,
 ) -> tuple[Log, ...]:
     """Take for usual such accelerations of each pass as its path shows.
 
@@ -34,19 +34,19 @@ def learn_unrest(
     Args:
         state: Where everything stands.
         logs: The logs, with the unrest that was assumed so far.
-        groups: The ties.
+        errors: Some that the state may have, drawn.
         settings: As for the adjustment.
     """
-    seen, alone = (draw_errors(state, logs, ties, settings, count=_DRAWS) for ties in (groups, ()))
+    draws = errors.shape[1]
+    alone = draw_errors(state, logs, (), settings, count=draws)
     learnt = []
     for log, path in zip(logs, state.paths, strict=True):
-        start, size = log.layout.starts[log.number], log.layout.sizes[log.number]
         found = _accelerate(path, np.hstack([path.positions, path.turns]))
         known, open_to = (
-            (_accelerate(path, errors[start : start + size].reshape(-1, WIDTH * _DRAWS)) ** 2)
-            .reshape(-1, WIDTH, _DRAWS)
+            (_accelerate(path, own.reshape(-1, WIDTH * draws)) ** 2)
+            .reshape(-1, WIDTH, draws)
             .mean(axis=(0, 2))
-            for errors in (seen, alone)
+            for own in (log.layout.of_path(log.number, drawn) for drawn in (errors, alone))
         )
         usual = log.unrest * np.sqrt((np.mean(found**2, axis=0) + known) / open_to)
         usual = np.minimum(usual, UNREST)
