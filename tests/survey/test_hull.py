@@ -8,7 +8,7 @@ import pytest
 
 from murkscan.cli.main import run
 from murkscan.project import MESH, MeshResult, Project, load_georeference
-from murkscan.survey.shown import load_model
+from murkscan.survey.shown import load_model, load_surface
 from murkscan.types.hull import HullFrame
 from murkscan.types.mesh import Mesh
 
@@ -107,7 +107,7 @@ def test_the_page_tells_them(side):
     assert lay_on_frames(side) == 0
     from murkscan.view.viewer_page import _about_place
 
-    about = _about_place(load_model(side, most=1000).place)
+    about = _about_place(load_model(side, load_surface(side), most=1000).place)
     assert about["hull"] == {"spacing": 0.6, "framesFrom": "stern", "heightsAbove": "keel"}
     aft = np.array(about["rotation"]) @ [0.3, -0.5, 1.06] + about["translation"]
     assert -aft[0] / 0.6 == pytest.approx(42.5, abs=1e-3)

@@ -26,5 +26,4 @@ def clip_mesh(mesh: Mesh, low: Vector, high: Vector) -> Mesh:
         for inwards in side * np.eye(3):
             if len(faces):
                 vertices, faces, _ = slice_faces_plane(vertices, faces, inwards, corner)
-    used, numbers = np.unique(faces, return_inverse=True)
-    return Mesh(np.asarray(vertices)[used], numbers.reshape(-1, 3).astype(np.int32))
+    return Mesh(np.asarray(vertices), faces).compact()

@@ -57,8 +57,7 @@ def cut_out(mesh: Mesh, selection: Selection | None) -> Mesh:
         raise NotEnoughData(
             f"None of the {len(mesh.faces)} triangles lies in the selection; choose another part."
         )
-    used, faces = np.unique(np.concatenate([mesh.faces[inside], small]), return_inverse=True)
-    return Mesh(vertices[used], faces.reshape(-1, 3))
+    return Mesh(vertices, np.concatenate([mesh.faces[inside], small])).compact()
 
 
 def _divide_large(mesh: Mesh, selection: Selection) -> Mesh:

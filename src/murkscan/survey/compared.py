@@ -6,8 +6,9 @@ from ..errors import Degenerate
 from ..geometry.alignment import Alignment
 from ..geometry.alignment_words import describe_alignment, turn_round
 from ..project import AlignmentResult, Project
+from ..types.mesh import Mesh
 from ..view import Model
-from .shown import choose_points, folder_of, has_surface, load_model
+from .shown import choose_points, folder_of, load_model, load_surface
 
 _SAMPLE = 2_000_000
 """Points of the scan, about, that alignment looks at."""
@@ -45,8 +46,9 @@ def compare_models(
         MissingResult: A stage has not been finished.
         FormatError: A file is damaged.
     """
-    stays = load_model(project, most=most, deviation=deviation)
-    moves = load_model(other, most=most)
+    own, others = load_surface(project), load_surface(other)
+    stays = load_model(project, own, most=most, deviation=deviation)
+    moves = load_model(other, others, most=most)
     named = [(stays, folder_of(project)), (moves, folder_of(other))]
     models = [replace(model, name=name) for model, name in named if model is not None]
     if len(models) < 2:
@@ -54,10 +56,10 @@ def compare_models(
     first, second = models
     if not align:
         return Compared(models, "Both lie where their poses put them.", None)
-    if not (has_surface(project) and has_surface(other)):
+    if own is None or others is None:
         text = "Both lie where their poses put them: without two surfaces nothing can be aligned."
         return Compared(models, text, None)
-    alignment = _lay(other, project)
+    alignment = _lay(others, other, project)
     if len(alignment.open_directions) == _ALL:
         text = (
             f"Both lie where their poses put them: what {second.name} and {first.name} share does "
@@ -71,12 +73,12 @@ def compare_models(
     return Compared([first, second], relation, AlignmentResult.from_alignment(alignment))
 
 
-def _lay(other: Project, project: Project) -> Alignment:
+def _lay(surface: Mesh, other: Project, project: Project) -> Alignment:
     try:
         # Here, since a scan that begins would load all measures for what it does not do.
         from ..measure.reference import Reference, lay_on
 
-        reference = Reference(other.load_mesh(), name=str(other.root))
+        reference = Reference(surface, name=str(other.root))
         laid = lay_on(reference, choose_points(project, _SAMPLE))
     except Degenerate as error:
         raise Degenerate(f"{error} With --as-given both stay as they are.") from error

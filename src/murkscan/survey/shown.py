@@ -22,6 +22,7 @@ from ..project import (
 from ..project.origin import name_recording
 from ..types.arrays import Indices
 from ..types.cloud import PointCloud
+from ..types.mesh import Mesh
 from ..view import Layer, Model, choose_fairly, cluster_vertices, model_of_scan
 from .measured import measurement_files
 from .shift_field import trace_shift_field
@@ -30,11 +31,19 @@ DEVIATION = "deviation"
 """The measurement that colours a scan unless another is named."""
 
 
-def load_model(project: Project, *, most: int, deviation: str = DEVIATION) -> Model | None:
+def load_surface(project: Project) -> Mesh | None:
+    """Load a scan's surface; None where it has none."""
+    return project.load_mesh() if has_surface(project) else None
+
+
+def load_model(
+    project: Project, surface: Mesh | None, *, most: int, deviation: str = DEVIATION
+) -> Model | None:
     """Load a scan to be shown; None where it has no points.
 
     Args:
         project: A scan, or a merged cloud, with a finished mesh stage.
+        surface: Its surface, as `load_surface` gives it.
         most: Points, and vertices of the surface, to keep.
         deviation: Name of the measurement whose deviations it is coloured by, if it has been made.
 
@@ -49,7 +58,7 @@ def load_model(project: Project, *, most: int, deviation: str = DEVIATION) -> Mo
     trajectory = find_trajectory(project)
     if recording is None and trajectory is not None:  # its alignment's errors belong to them
         trajectory = replace(trajectory, errors=None)
-    mesh = cluster_vertices(project.load_mesh(), most) if has_surface(project) else None
+    mesh = None if surface is None else cluster_vertices(surface, most)
     rows = choose_fairly(total, most)
     if mesh is not None and mesh.points is not None:
         rows = np.union1d(rows, mesh.points)

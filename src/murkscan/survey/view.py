@@ -14,8 +14,8 @@ from .shown import (
     DEVIATION,
     deviation_digest,
     georeference_digest,
-    has_surface,
     load_model,
+    load_surface,
     title_of,
 )
 from .stage_runner import run_stage
@@ -70,8 +70,12 @@ def draw_views(
     stage = project.stage(VIEW, settings=settings, inputs=inputs)
 
     def prepare() -> tuple[Mesh | None, Compared]:
-        surface = project.load_mesh() if has_surface(project) else None
-        return surface, _load(project, other, align=align, deviation=deviation, most=most)
+        surface = load_surface(project)
+        if other is not None:
+            compared = compare_models(project, other, align=align, deviation=deviation, most=most)
+            return surface, compared
+        model = load_model(project, surface, most=most, deviation=deviation)
+        return surface, Compared([] if model is None else [model], "", None)
 
     def make(prepared: tuple[Mesh | None, Compared]) -> ViewResult:
         surface, shown = prepared
@@ -107,16 +111,6 @@ def film_scan(project: Project, path: Path, *, progress: Progress = silent) -> N
         for number, picture in enumerate(pictures):
             write(picture, number / _RATE)
             progress("film", number + 1, TURN)
-
-
-def _load(
-    project: Project, other: Project | None, *, align: bool, deviation: str, most: int
-) -> Compared:
-    """Load what there is to show."""
-    if other is not None:
-        return compare_models(project, other, align=align, deviation=deviation, most=most)
-    model = load_model(project, most=most, deviation=deviation)
-    return Compared([] if model is None else [model], "", None)
 
 
 def _page(title: str, shown: Compared) -> str:

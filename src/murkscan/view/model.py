@@ -10,6 +10,7 @@ from scipy.spatial import KDTree
 from ..errors import InputError
 from ..types.arrays import Directions, Faces, Indices, Points, Scalars
 from ..types.georeference import Georeference
+from ..types.mesh import used_vertices
 from ..types.pose import Pose
 from .shift_field import ShiftField
 from .surface import vertex_normals
@@ -169,7 +170,7 @@ def normals_of(points: Points, faces: Faces, otherwise: Directions) -> Direction
     if len(faces) == 0:
         return otherwise
     normals = np.array(otherwise, float)
-    on_surface = np.unique(faces)
+    on_surface = used_vertices(faces)
     normals[on_surface] = vertex_normals(points, faces)[on_surface]
     return normals
 

@@ -13,6 +13,7 @@ from markupsafe import Markup
 from ..errors import InputError, NotEnoughData
 from ..types.arrays import Indices, Scalars
 from ..types.georeference import Georeference
+from ..types.mesh import used_vertices
 from .depth import Depth
 from .model import Layer, Model
 from .packing import pack, pack_directions, pack_moves, pack_positions, pack_values
@@ -213,7 +214,7 @@ def _about_depth(model: Model) -> dict[str, Any]:
 
 def _typical(model: Model) -> Indices:
     """Give the vertices that decide on the colours: stray points are on no surface."""
-    return np.unique(model.faces) if len(model.faces) else np.arange(len(model.vertices))
+    return used_vertices(model.faces) if len(model.faces) else np.arange(len(model.vertices))
 
 
 def _about(layer: Layer, typical: Indices) -> dict[str, Any]:

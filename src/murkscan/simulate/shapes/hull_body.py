@@ -67,5 +67,4 @@ def _weld(rings: Rings, waterline_to_keel: int) -> Mesh:
     faces = grid_faces(np.append(number, number[:, :1], axis=1))
     a, b, c = faces.T
     faces = faces[(a != b) & (b != c) & (c != a)]
-    used, faces = np.unique(faces, return_inverse=True)
-    return Mesh(rings.reshape(-1, 3)[used], faces.reshape(-1, 3))
+    return Mesh(rings.reshape(-1, 3), faces).compact()
