@@ -1,17 +1,20 @@
 """Every command in order on one small project, and what a wrong one says."""
 
+import io
 import os
 import shutil
 import subprocess
 import sys
 
 import pytest
+from rich.console import Console
 
-from murkscan.cli.main import run
+from murkscan.cli.main import app, run
 
 COMMANDS = [
-    "demo", "simulate", "calibrate", "capture", "live", "scan", "extract", "triangulate", "motion",
-    "cloud", "merge", "mesh", "measure", "view", "report", "plan", "studio",
+    "demo", "simulate", "calibrate", "capture", "dive", "live", "scan", "extract", "triangulate",
+    "motion", "cloud", "merge", "georeference", "mesh", "measure", "accept", "view", "report",
+    "check", "turntable", "plan", "studio",
 ]  # fmt: skip
 
 
@@ -57,7 +60,30 @@ def test_the_paper_as_printed_runs_too(short, tmp_path):
 @pytest.mark.parametrize("command", COMMANDS)
 def test_every_command_has_help(command, capsys):
     assert run([command, "--help"]) == 0
-    assert "Usage: murkscan" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "Usage: murkscan" in said
+    assert "[default: False]" not in said
+    assert "()" not in said
+
+
+def test_help_of_a_measure_is_found_in_the_order_of_the_call(capsys):
+    assert run(["measure", "section", "--help"]) == 0
+    said = capsys.readouterr().out
+    assert "--normal" in said
+    assert run(["measure", "OUT", "section", "--help"]) == 0
+    assert capsys.readouterr().out == said
+
+
+def test_a_flag_without_its_value_is_told_so(tmp_path, capfd):
+    assert run(["view", str(tmp_path), "--film"]) == 2
+    assert "--film needs something behind it" in capfd.readouterr().err
+
+
+def test_help_is_wrapped_by_the_terminal_alone():
+    """A sentence of two lines in our source is one, however wide the terminal."""
+    said = io.StringIO()
+    app.help_print(["scan"], console=Console(file=said, width=300))
+    assert "two corners X,Y,Z,X,Y,Z in the world [m]." in said.getvalue()
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@
 
 import pytest
 
-from murkscan.cli.words import wrap
+from murkscan.cli.words import fit_columns, wrap
 from murkscan.cloud import OUTLIER_RULES, Outside
 from murkscan.project.results import CloudResult, ExtractResult, MeshResult, ReportResult
 from murkscan.report import CAUSES
@@ -61,3 +61,17 @@ def test_an_interval_says_whether_it_heeds_the_calibration():
 
 def test_an_empty_surface_says_where_to_look():
     assert "extract/overlay" in tell_quality(MeshResult(0, 0))[0]
+
+
+TABLE = [("plane", "value", "1σ common"), ("normal x", "-0.000123", "unknown")]
+
+
+def test_a_narrow_table_breaks_between_words_and_cuts_none():
+    assert fit_columns(TABLE, 80) == [8, 9, 9]
+    assert fit_columns(TABLE, 34) == [8, 9, 7]
+
+
+def test_a_table_whose_words_have_no_room_is_told_as_a_list():
+    least = sum((6, 9, 7)) + 3 * 3 + 1
+    assert fit_columns(TABLE, least) == [6, 9, 7]
+    assert fit_columns(TABLE, least - 1) is None

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from .paths import ScanFolder
+from .progress import working
 from .typed import WORDS
 from .words import print_table, say, say_verdict, tell
 
@@ -35,9 +36,13 @@ def accept(
     from ..project import Project
     from ..survey.accept import accept_scan
 
-    protocol = accept_scan(Project(out, WORDS.get()), load_acceptance(test), source=test)
+    project, asked = Project(out, WORDS.get()), load_acceptance(test)
+    with working("holding the scan against its limits"):
+        protocol = accept_scan(project, asked, source=test)
     _print(protocol)
-    tell("made", f"{out / 'accept' / 'index.html'}, to sign; {out / 'accept' / 'accept.json'}")
+    page = out / "accept" / "index.html"
+    tell("made", str(page), str(page.with_name("accept.json")))
+    tell("next", "open the page in a browser, print it and sign it")
 
 
 def _print(protocol: "Protocol") -> None:

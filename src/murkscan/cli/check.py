@@ -24,7 +24,10 @@ def check(out: Path) -> None:
     with progress_bars() as progress:
         checks = check_project(Project(out), progress=progress)
     for one in checks:
-        counts = f"{one.num_whole:,} files as they were written"
+        many = one.num_whole != 1
+        counts = (
+            f"{one.num_whole:,} file{'s' * many} as {'they were' if many else 'it was'} written"
+        )
         if one.foreign:
             counts += f", {len(one.foreign):,} that are not murkscan's"
         tell(one.word, f"{counts}{'; ' + one.state if one.state else ''}", indent=_INDENT)

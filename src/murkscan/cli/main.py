@@ -5,10 +5,12 @@ import os
 import shutil
 import sys
 import traceback
+from typing import get_args
 
 from cyclopts import App, CoercionError, CycloptsError, MissingArgumentError
 
 from ..errors import MurkscanError
+from .help import Formatter
 from .typed import WORDS
 from .words import wrap
 
@@ -53,6 +55,7 @@ app = App(
     version=_version,
     version_flags=["--version"],
     help_format="plaintext",
+    help_formatter=Formatter(),
     suppress_keyboard_interrupt=False,
 )
 for _place, (_name, _help) in enumerate(_COMMANDS.items()):
@@ -86,7 +89,7 @@ def run(arguments: list[str]) -> int:
             return _say(f"what follows `{typed}` is empty; say what is meant.", 2)
     try:
         app(
-            arguments,
+            _ask_the_measure(arguments),
             exit_on_error=False,
             print_error=False,
             result_action="return_value",
@@ -107,6 +110,16 @@ def run(arguments: list[str]) -> int:
     return 0
 
 
+def _ask_the_measure(arguments: list[str]) -> list[str]:
+    """Let `measure OUT section --help` say what a section wants to know."""
+    first, *others = arguments or [""]
+    if first != "measure" or not {"--help", "-h"}.intersection(others):
+        return arguments
+    from .measure import What
+
+    return [first, *[word for word in others if word in get_args(What)][:1], "--help"]
+
+
 def _in_our_words(error: CycloptsError) -> str:
     """Say what is wrong with the words, without those of a programmer."""
     if isinstance(error, CoercionError) and error.token and error.target_type in (int, float):
@@ -115,6 +128,8 @@ def _in_our_words(error: CycloptsError) -> str:
         return f'{name} takes a {kind} and nothing behind it, got "{error.token.value}".'
     if isinstance(error, MissingArgumentError) and error.command_chain and error.argument:
         name, is_first = error.argument.name, error.argument.index is not None
+        if name in WORDS.get():
+            return f"{name} needs something behind it; the same with --help says what."
         wanted = name.lstrip("-").upper() if is_first else name
         return f"{error.command_chain[-1]} needs {wanted}; the same with --help says what that is."
     return str(error)

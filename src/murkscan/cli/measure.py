@@ -17,6 +17,7 @@ from .measure_part import (
     read_plane,
 )
 from .options import MaybePlace, Place
+from .progress import working
 from .typed import WORDS
 
 if TYPE_CHECKING:
@@ -76,7 +77,8 @@ def distance(out: CloudScan, *, from_m: Place, to_m: Place, name: Name = "distan
     Parameters
     ----------
     from_m
-        Where it begins, as X,Y,Z read off cloud.ply [m]; the nearest point of the scan counts.
+        Where it begins, as X,Y,Z [m], which a click on the model's page tells; the nearest
+        point of the scan counts.
     to_m
         Where it ends [m].
     """
@@ -88,9 +90,9 @@ def distance(out: CloudScan, *, from_m: Place, to_m: Place, name: Name = "distan
 
     ends = np.array([read_place("--from-m", from_m), read_place("--to-m", to_m)])
     project = Project(out, WORDS.get())
-    print_measurement(
-        out, name, measure_points(project, lambda points: measure_distance(points, ends), name=name)
-    )
+    with working("measuring"):
+        found = measure_points(project, lambda points: measure_distance(points, ends), name=name)
+    print_measurement(out, name, found)
 
 
 @app.command(sort_key=2)
@@ -158,8 +160,9 @@ def section(
         plane = read_plane(point_m, normal)
     else:
         raise InputError("Give --point-m and --normal, or of a ship --at-frame or --from-bow-m.")
-    found = measure_cut(project, plane, name=name, formats=chosen)
-    print_measurement(out, name, found, suffixes=tuple(chosen))
+    with working("cutting the surface"):
+        found = measure_cut(project, plane, name=name, formats=chosen)
+    print_measurement(out, name, found, endings=tuple(f".{one}" for one in chosen))
 
 
 def _measure_part(
@@ -168,5 +171,7 @@ def _measure_part(
     from ..project import Project
     from ..survey.measure import measure_points
 
-    found = measure_points(Project(out, WORDS.get()), measure, name=name, selection=part.select())
+    project, chosen = Project(out, WORDS.get()), part.select()
+    with working("measuring"):
+        found = measure_points(project, measure, name=name, selection=chosen)
     print_measurement(out, name, found)

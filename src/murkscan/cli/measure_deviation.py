@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Parameter
 
 from ..ui.values import read_pose
-from .measure_part import MeshScan, PartFlags, print_measurement
+from .measure_part import MeshScan, PartFlags, print_measurement, tell_of_report
+from .progress import working
 from .typed import WORDS
 from .words import print_table, say, tell
 
@@ -34,6 +35,8 @@ Start = Annotated[
         "X,Y,Z,QW,QX,QY,QZ with how it is turned.",
     ),
 ]
+_MAP = (".ply", ".csv", "-front.png", "-isometric.png", "-histogram.png")
+"""Endings of what deviations are written into."""
 FilesName = Annotated[
     str, Parameter(help="What to call it: OUT/measure/NAME.json, .ply, .csv, .png.")
 ]
@@ -65,18 +68,17 @@ def deviation(
     from ..project import Project
     from ..survey.deviation import compare_scan
 
-    project = Project(out, WORDS.get())
-    found = compare_scan(
-        project,
-        _load(project, reference, unit, as_given, start),
-        within=reach_mm / 1e3,
-        name=name,
-        selection=part.select(),
-    )
-    print_measurement(out, name, found, suffixes=("ply", "csv"))
-    kinds = ("front", "isometric", "histogram")
-    tell("pictures", *(str(out / "measure" / f"{name}-{kind}.png") for kind in kinds))
-    tell("next", f"murkscan view {quote(str(out))} --deviation {name}: its page, coloured by this")
+    project, chosen = Project(out, WORDS.get()), part.select()
+    with working("comparing with the reference"):
+        found = compare_scan(
+            project,
+            _load(project, reference, unit, as_given, start),
+            within=reach_mm / 1e3,
+            name=name,
+            selection=chosen,
+        )
+    then = f"murkscan view {quote(str(out))} --deviation {name}: its page, coloured by this"
+    print_measurement(out, name, found, endings=_MAP, then=then)
 
 
 def dents(
@@ -105,24 +107,31 @@ def dents(
     largest_mm
         Width of the largest one [mm]: wider shapes are taken for the hull's own.
     least_depth_mm
-        Depth below which none is told [mm].
+        Depth below which none is listed [mm].
     """
     from ..project import Project
     from ..survey.deviation import search_dents
 
-    project = Project(out, WORDS.get())
-    search = search_dents(
-        project,
-        None if reference is None else _load(project, reference, unit, as_given, start),
-        smallest=smallest_mm / 1e3,
-        largest=largest_mm / 1e3,
-        least_depth=least_depth_mm / 1e3,
-        name=name,
-        selection=part.select(),
-    )
+    project, chosen = Project(out, WORDS.get()), part.select()
+    with working("looking for dents"):
+        search = search_dents(
+            project,
+            None if reference is None else _load(project, reference, unit, as_given, start),
+            smallest=smallest_mm / 1e3,
+            largest=largest_mm / 1e3,
+            least_depth=least_depth_mm / 1e3,
+            name=name,
+            selection=chosen,
+        )
     _print_dents(search)
     endings = (".json", ".ply", ".csv", "-anomalies.csv", ".dxf", "-front.png", "-isometric.png")
     tell("made", *(str(out / "measure" / f"{name}{ending}") for ending in endings))
+    if search.dents:
+        tell("next", tell_of_report(out))
+    else:
+        tell(
+            "next", f"murkscan view {quote(str(out))} --deviation {name}: the page, coloured by it"
+        )
 
 
 def _load(
@@ -153,7 +162,7 @@ def _print_dents(search: "DentSearch") -> None:
         say(text)
     say(
         f"Averaged over the smallest dent, the scan scatters by {1e3 * search.noise:.3f} mm; what "
-        f"departs by more than {1e3 * search.threshold:.3f} mm is told."
+        f"departs by more than {1e3 * search.threshold:.3f} mm is listed."
     )
 
 

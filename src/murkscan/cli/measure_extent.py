@@ -1,5 +1,7 @@
 """murkscan measure step, area and volume."""
 
+from typing import TYPE_CHECKING
+
 from ..errors import InputError
 from .measure_part import (
     CloudScan,
@@ -11,7 +13,11 @@ from .measure_part import (
     read_plane,
 )
 from .options import MaybePlace, Place
+from .progress import working
 from .typed import WORDS
+
+if TYPE_CHECKING:
+    from ..types.plane import Plane
 
 
 def step(
@@ -41,7 +47,8 @@ def step(
         Ball(read_place(flag, text), within_mm / 1e3)
         for flag, text in (("--first-m", first_m), ("--second-m", second_m))
     )
-    found = measure_stairs(Project(out, WORDS.get()), first, second, name=name)
+    with working("measuring"):
+        found = measure_stairs(Project(out, WORDS.get()), first, second, name=name)
     print_measurement(out, name, found)
 
 
@@ -50,7 +57,9 @@ def area(out: MeshScan, *, part: PartFlags = PartFlags(), name: Name = "area") -
     from ..project import Project
     from ..survey.measure import measure_covered
 
-    found = measure_covered(Project(out, WORDS.get()), name=name, selection=part.select())
+    project, chosen = Project(out, WORDS.get()), part.select()
+    with working("measuring"):
+        found = measure_covered(project, name=name, selection=chosen)
     print_measurement(out, name, found)
 
 
@@ -88,18 +97,21 @@ def volume(
     if is_given and is_fitted:
         raise InputError("Give the plane, or the part that it is fitted to, not both.")
     project, chosen = Project(out, WORDS.get()), part.select()
+    base: Plane | Ball | None = None
     if point_m is not None and normal is not None:
-        found = measure_above(project, read_plane(point_m, normal), name=name, selection=chosen)
+        base = read_plane(point_m, normal)
     elif base_near_m is not None and base_within_mm is not None:
         base = Ball(read_place("--base-near-m", base_near_m), base_within_mm / 1e3)
-        found = measure_above(project, base, name=name, selection=chosen)
     elif chosen is not None:
         raise InputError(
             "A part of a surface encloses no volume; give a plane with --point-m and --normal, or "
             "--base-near-m and --base-within-mm."
         )
-    else:
-        found = measure_inside(project, name=name)
+    with working("measuring"):
+        if base is None:
+            found = measure_inside(project, name=name)
+        else:
+            found = measure_above(project, base, name=name, selection=chosen)
     print_measurement(out, name, found)
 
 

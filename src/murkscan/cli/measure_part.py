@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Group, Parameter
@@ -34,6 +35,11 @@ _MEANING = (
     "in 95 of 100 scans the truth lies within value ± 95%; 1σ is a standard deviation, a bit over "
     'half of that: "own" is the points\' noise, which more '
     'points lessen, "common" is what all points share, such as the calibration\'s error'
+)
+
+_PROVE = (
+    "murkscan accept --help, to prove such numbers: how far a scan of an artefact of known size, "
+    "in the same water, is off"
 )
 
 PART = Group("Which part of the scan", sort_key=11)
@@ -124,9 +130,22 @@ def _read_three(flag: str, text: str) -> tuple[float, float, float]:
 
 
 def print_measurement(
-    out: Path, name: str, found: "Measurement", *, suffixes: tuple[str, ...] = ()
+    out: Path,
+    name: str,
+    found: "Measurement",
+    *,
+    endings: tuple[str, ...] = (),
+    then: str = _PROVE,
 ) -> None:
-    """Print a measurement as a table, what its intervals lack, and where it was written."""
+    """Print a measurement as a table, what its intervals lack, and where it was written.
+
+    Args:
+        out: Folder of the scan.
+        name: What the measurement is called.
+        found: The measurement.
+        endings: Of the files that were written beside its .json.
+        then: What to do next.
+    """
     from ..project import Project, load_georeference
     from ..project.unstated import list_unstated
 
@@ -138,7 +157,13 @@ def print_measurement(
     for text in (*found.remarks, *list_unstated(Project(out))):
         say(text)
     tell("meaning", _MEANING)
-    tell("made", *(str(out / "measure" / f"{name}.{kind}") for kind in ("json", *suffixes)))
+    tell("made", *(str(out / "measure" / f"{name}{end}") for end in (".json", *endings)))
+    tell("next", then)
+
+
+def tell_of_report(out: Path) -> str:
+    """Say where anomalies and dents are listed for others to read."""
+    return f"murkscan report {quote(str(out))}: its page lists them, with pictures"
 
 
 def _row(quantity: "Quantity") -> tuple[str, ...]:

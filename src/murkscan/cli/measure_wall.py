@@ -12,8 +12,10 @@ from .measure_part import (
     read_cylinder,
     read_place,
     read_plane,
+    tell_of_report,
 )
 from .options import MaybePlace
+from .progress import working
 from .typed import WORDS
 from .words import tell
 
@@ -90,11 +92,14 @@ def wall(
         is_ribbed=ribbed,
         least=least_mm / 1e3,
     )
-    found = draw_elevation(Project(out, WORDS.get()), plan, name=name, selection=part.select())
+    project, chosen = Project(out, WORDS.get()), part.select()
+    with working("drawing the wall"):
+        found = draw_elevation(project, plan, name=name, selection=chosen)
     listed = found.details["anomalies"]
     count = len(listed) if isinstance(listed, list) else 0
     tell("found", f"{count} parts off by more than {least_mm:g} mm, in {name}-anomalies.csv")
-    print_measurement(out, name, found, suffixes=("png", "tif", "dxf"))
+    endings = (".png", ".tif", ".dxf", "-anomalies.csv")
+    print_measurement(out, name, found, endings=endings, then=tell_of_report(out))
 
 
 def _read_reference(

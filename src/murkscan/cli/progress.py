@@ -62,6 +62,18 @@ def progress_bars() -> Iterator["Progress"]:
 
 
 @contextmanager
+def working(what: str) -> Iterator[None]:
+    """Show that something goes on of which nobody knows how long it takes."""
+    if os.environ.get(ASK) == "lines":
+        yield
+        return
+    from rich.console import Console
+
+    with Console(stderr=True).status(what):
+        yield
+
+
+@contextmanager
 def _telling_of_compilation(bars: "Bars") -> Iterator[None]:
     """Say so when loops are compiled, as they are on their first use after an installation."""
     from numba.core import event

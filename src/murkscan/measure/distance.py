@@ -55,8 +55,8 @@ def _nearest(sample: Sample, end: Vector) -> int:
         place = ",".join(f"{part:.10g}" for part in end)
         raise InputError(
             f"No point of the scan lies within {_FARTHEST * 1e3:.0f} mm of {place} m, "
-            f"the nearest is {away[number] * 1e3:.0f} mm away; read both ends off cloud/cloud.ply, "
-            "whose coordinates are metres."
+            f"the nearest is {away[number] * 1e3:.0f} mm away; click both on the model's page "
+            "(murkscan view), which has this command to copy."
         )
     return number
 

@@ -170,7 +170,7 @@ def _nearest(in_world: Points, end: Vector) -> int:
         x, y, z = end
         raise InputError(
             f"No point of the scan lies within {_FARTHEST * 1e3:.0f} mm of {x:g},{y:g},{z:g} m; "
-            "read both ends off cloud/cloud.ply, whose coordinates are metres."
+            "click both ends on the model's page (murkscan view), which shows them in metres."
         )
     return int(distances.argmin())
 
