@@ -410,6 +410,14 @@ def drawn_rows(page):
     return mask
 
 
+def test_what_is_rounded_stands_under_about(page):
+    page.keyboard.press("?")
+    said = page.locator("#help").inner_text()
+    page.keyboard.press("Escape")
+    assert re.search(r"Places are rounded by (less than )?0\.\d{3} mm", said[said.index("About") :])
+    assert "rounded" not in page.locator("#about").inner_text()
+
+
 def test_another_scan_is_one_key_away(page):
     name = page.locator("#about").inner_text()
     page.keyboard.press("b")

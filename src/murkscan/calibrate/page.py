@@ -21,7 +21,7 @@ from ..page import (
 from .board.coverage import cover
 from .calibration import Calibration
 from .verdict import CalibrationVerdict
-from .words import as_read, describe, most_influential, strongest_pairs, value_of
+from .words import MEANING, as_read, describe, most_influential, strongest_pairs, value_of
 
 _PICTURES = 8
 """Photos shown on the page, those that fit worst first."""
@@ -50,7 +50,7 @@ def write_page(
     notes = notes or [Note(verdict.praise, "good")]
     sections = [
         Section("", [*notes, _facts(calibration, unused)]),
-        Section("What that means where you measure", [_errors(verdict)]),
+        Section("What that means where you measure", [_errors(verdict), Note(MEANING)]),
         Section("What was seen", [_coverage_figure(calibration), _reach_figure(calibration)]),
         Section("Parameters", [_parameters(calibration), *_correlations(calibration)]),
         Section("Photos used", [Gallery(_pictures(calibration, suffix))]),

@@ -16,6 +16,14 @@ from .adjust.observations import index_of
 from .adjust.residuals import is_of_stand
 from .adjust.solve import Adjustment
 
+MEANING = (
+    "Errors are one standard deviation, of what the calibration leaves open: of a laser, by how "
+    "much all points near there are off together; of a camera or a window, by how much a flat "
+    "shape comes out bent; of a mount, by how much a place is off. Told by these photos is the "
+    "share of what is known of a number that comes from them, not from before. Two numbers that "
+    "go together may both be off, and points be right."
+)
+"""What the figures of a calibration mean, for its page and the terminal."""
 _LIMITS = {
     "focal_length": 0.05,
     "principal_point": 0.05,

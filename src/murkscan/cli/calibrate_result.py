@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
 def print_result(result: "CalibrationResult", rig: Path) -> None:
     """Print the result of a calibration that was written to a rig file."""
+    from ..calibrate.words import MEANING
+
     found = result.calibration
     say_verdict(str(result.verdict), result.verdict.is_good, is_usable=result.verdict.is_usable)
     _print_errors(result.verdict)
@@ -41,6 +43,7 @@ def print_result(result: "CalibrationResult", rig: Path) -> None:
     say_unused(result.unused, used=len(found.sightings))
     for remark in result.remarks:
         tell("note", remark)
+    tell("meaning", MEANING)
     tell("made", f"written to {rig}; as it is now it is kept as {result.record}")
     tell("look", f"open {result.page}: every photo, and what was found in it")
     tell("next", *_next_steps(found.step, result.verdict, rig))

@@ -40,7 +40,7 @@ export class App {
     const size = Math.hypot(...box.high.map((high, axis) => high - box.low[axis]));
     stage.start(views.front[1].map((x) => -x), Math.max(size, 1e-4));
     stage.listeners.push(() => this.follow());
-    this.help = makeHelp();
+    this.help = makeHelp(models);
     this.tools = [showTool, viewsTool, measureTool, cutTool, pathTool, controlTool].map((tool) => tool(this));
     buildPanel(this, this.tools);
     startKeys(this);

@@ -36,6 +36,7 @@ export function controlTool(app) {
   const kinds = choice("What the points lie in",
     Object.entries(KINDS).map(([value, { label }]) => [value, label]),
     (kind) => app.update({ controlKind: kind }));
+  kinds.element.classList.add("stacked");
   const hint = make("p", { className: "note" });
   const list = make("ol", { className: "picks" });
   const save = make("button", { type: "button", textContent: "Save as CSV", onclick: saveTable });

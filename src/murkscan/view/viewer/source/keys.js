@@ -28,9 +28,9 @@ const HELP = [
   ["?", "this help"],
 ];
 
-const ABOUT = [
+const about = (rounding) => [
   "Lengths are in millimetres, places in metres along the world's axes, as commands take and give them.",
-  "Places are rounded as the line under the title says, values to a 65 000th of their range, the "
+  `Places are rounded by ${rounding}, values to a 65 000th of their range, the `
     + "directions that shade the surface to a quarter of a degree. cloud.ply has all digits.",
   "White slits and gaps are places without a point: an edge hid them from the laser or from the camera, no "
     + "light came back, or the camera went too fast. The report's map says which. Nothing is made up there.",
@@ -69,15 +69,17 @@ export function startKeys(app) {
   });
 }
 
-export function makeHelp() {
+export function makeHelp(models) {
+  const step = Math.max(...models.map(({ grid }) => grid.step / 2)) * 1e3;
+  const rounding = step < 0.001 ? "less than 0.001 mm" : `${step.toFixed(3)} mm`;
   const help = document.getElementById("help");
   const rows = HELP.flatMap(([keys, meaning]) =>
     [make("dt", { textContent: keys }), make("dd", { textContent: meaning })]);
   const close = make("button", { type: "button", textContent: "Close", onclick: () => help.close() });
   help.append(
     make("h2", { textContent: "Keys and gestures" }), make("dl", {}, ...rows),
-    make("h2", { textContent: "What the page shows" }),
-    ...ABOUT.map((textContent) => make("p", { textContent })), close);
+    make("h2", { textContent: "About" }),
+    ...about(rounding).map((textContent) => make("p", { textContent })), close);
   help.addEventListener("click", (event) => { if (event.target === help) help.close(); });
   return help;
 }

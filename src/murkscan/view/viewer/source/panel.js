@@ -42,10 +42,8 @@ function foot(app) {
   return make("footer", {}, ...parts);
 }
 
-export function describeModel({ measured, faces, grid, name }, isOneOfMany) {
+export function describeModel({ measured, faces, name }, isOneOfMany) {
   const parts = [`${grouped(measured)} points`];
   if (faces.length) parts.push(`${grouped(faces.length / 3)} triangles`);
-  const rounding = (grid.step / 2) * 1e3;
-  parts.push(`places rounded by ${rounding < 0.001 ? "less than 0.001" : rounding.toFixed(3)} mm`);
   return (isOneOfMany ? `${name}: ` : "") + parts.join(" · ");
 }
