@@ -41,7 +41,7 @@ def steady_normals(
     off = np.einsum("nki,ni->nk", facets.axes, facets.normals - smooth)
     common = fit_rows(facets, off)
     of_rows = keep_rows(facets, common, noise, made)
-    steady = _keepshare_of_signal(off - common, noise, which) + of_rows
+    steady = _keep_signal(off - common, noise, which) + of_rows
     rough = np.einsum("nk,nki->ni", steady, facets.axes)
     steep = smooth + _steepen(facets, smooth, rough)
     return (
@@ -50,7 +50,7 @@ def steady_normals(
     )
 
 
-def _keepshare_of_signal(slopes: Slopes, noise: Slopes, patch: Indices) -> Slopes:
+def _keep_signal(slopes: Slopes, noise: Slopes, patch: Indices) -> Slopes:
     """Take the share of slopes away that noise explains, in each patch along both its own axes."""
     count = np.bincount(patch)
     level = np.stack([np.bincount(patch, n) for n in noise.T], axis=1) / count[:, None]
