@@ -14,10 +14,12 @@ hello:
 	@test -e $(VENV)/core || echo "Once: an environment in $(VENV) with murkscan's libraries, about 0.9 GB," \
 	  "two to four minutes. Then the demo: one to two minutes."
 
-# Two runs of tests fill the cores; threads of small matrix products would only wait for one another.
+# A run of tests a core, and one more while others wait for a browser or a stream; threads of small
+# matrix products would only wait for one another.
 # What the tests start compiles Python anew each time unless Python may keep what it has compiled.
 test: check
-	env -u PYTHONDONTWRITEBYTECODE OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist loadfile
+	env -u PYTHONDONTWRITEBYTECODE OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest --dist loadfile \
+	  -n $$($(BIN)/python -c 'import os; print((os.cpu_count() or 1) + 1)')
 
 check: $(VENV)/dev
 	$(BIN)/ruff format --check .
