@@ -10,7 +10,7 @@ import tomlkit
 
 ROOT = Path(__file__).parents[1]
 VIEWER = "src/murkscan/view/viewer"
-BUILDS_ONLY = (f"{VIEWER}/source/", f"{VIEWER}/package", f"{VIEWER}/build.js")
+BUILDS_ONLY = tuple(f"{VIEWER}/{name}" for name in ("source/", "package", "build.js", ".npmrc"))
 
 
 def kept_files():
