@@ -41,6 +41,8 @@ def test_every_reason_to_take_a_point_out_has_words(cause):
 
 
 def test_what_was_left_out_on_request_is_no_reason_to_doubt():
+    asked = CloudResult(100, 407, {"volume": 400, "density": 7})
+    assert tell_made(asked) == "100 points, 7 outliers taken out, 400 left out with the volume"
     assert len(tell_quality(CloudResult(100, 400, {"volume": 400}))) == 1
     assert "that is much" in tell_quality(CloudResult(100, 400, {"density": 400}))[-1]
 

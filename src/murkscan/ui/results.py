@@ -98,7 +98,9 @@ def _(result: MotionResult) -> tuple[str, ...]:
 
 @tell_made.register
 def _(result: CloudResult) -> str:
-    return f"{result.points:,} points, {result.outliers:,} outliers taken out"
+    asked = result.outliers_by.get("volume", 0)
+    said = f"{result.points:,} points, {result.outliers - asked:,} outliers taken out"
+    return f"{said}, {asked:,} left out with the volume" if asked else said
 
 
 @tell_quality.register
