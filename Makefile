@@ -31,8 +31,9 @@ bench: $(VENV)/dev
 	@set -e; for script in benchmarks/*.py; do echo "== $$script"; $(BIN)/python $$script; done
 
 # The site of the pages, the examples (which are run) and the docstrings: docs/_build/html/index.html.
+# SPHINX="-D plot_gallery=0" leaves the examples as they are, for who has run them already.
 docs: $(VENV)/docs
-	$(BIN)/python -m sphinx -q -W --keep-going -b html docs docs/_build/html
+	$(BIN)/python -m sphinx -q -W --keep-going $(SPHINX) -b html docs docs/_build/html
 	@echo "Open docs/_build/html/index.html"
 
 # The script of the page that `murkscan view` writes; committed, so that users need no node.

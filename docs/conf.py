@@ -1,6 +1,7 @@
 """How Sphinx makes the site of these pages, of the examples and of the docstrings."""
 
 from importlib import metadata
+from pathlib import Path
 
 project = "murkscan"
 release = metadata.version("murkscan")
@@ -30,6 +31,7 @@ sphinx_gallery_conf = {
     "abort_on_example_error": True,
     "download_all_examples": False,
     "remove_config_comments": True,
+    "default_thumb_file": str(Path(__file__).parent / "ship" / "propeller.png"),
     "show_memory": False,
     "min_reported_time": 3600,
     "reset_modules": (),

@@ -6,6 +6,8 @@ Find the stripe in one picture, and turn it into points.
 Everything here is a value: a rig, a frame, a stripe, a profile.
 """
 
+# sphinx_gallery_thumbnail_path = "ship/frame.png"
+
 import math
 
 import numpy as np

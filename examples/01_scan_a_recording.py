@@ -7,6 +7,8 @@ Later examples look at this scan. It lies in the folder for temporary files, and
 is done and unchanged is skipped.
 """
 
+# sphinx_gallery_thumbnail_path = "view.png"
+
 from dataclasses import replace
 from pathlib import Path
 from tempfile import gettempdir

@@ -4,6 +4,8 @@
 Hold each finder against the true centres of a recording in murky water.
 """
 
+# sphinx_gallery_thumbnail_path = "benchmarks/murk.png"
+
 import numpy as np
 
 import murkscan as ms

@@ -7,6 +7,8 @@ The scan is made up here, with a dent of 2 mm and noise of 0.15 mm a point; of a
 `ms.Project("dive").load_cloud()`, or `murkscan measure dive dents`.
 """
 
+# sphinx_gallery_thumbnail_path = "ship/dome.png"
+
 import numpy as np
 
 import murkscan as ms

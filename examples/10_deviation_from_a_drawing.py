@@ -7,6 +7,8 @@ The scan is that of example 01, a ball before a wall; its drawing is the simulat
 the command line: ``murkscan measure dive deviation --reference hull.stl --unit mm``.
 """
 
+# sphinx_gallery_thumbnail_path = "ship/deviation.png"
+
 from importlib import import_module
 
 from murkscan.survey.deviation import compare_scan, load_reference
