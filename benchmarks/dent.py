@@ -23,8 +23,7 @@ from murkscan.measure import (
     find_dents,
 )
 from murkscan.simulate import Body, Scene, load_scene, simulate_frames
-from murkscan.triangulate import RaySheet
-from murkscan.triangulate.base import triangulate
+from murkscan.triangulate import RaySheet, learn_paint_pulls, triangulate, undo_paint_pull
 from murkscan.types.mesh import Mesh
 from murkscan.types.stripe import Stripe
 from murkscan.types.trajectory import Trajectory
@@ -121,7 +120,9 @@ def scan(scene: Scene) -> Sample:
     extractor = make_extractor(EXTRACTOR, ())
     background = extractor.learn(frames, scene.rig)
     stripes = list(extractor.extract(frames, scene.rig, background))
-    profile = triangulate(Stripe.concatenate(stripes), scene.rig, RaySheet())
+    stripe = Stripe.concatenate(stripes)
+    stripe = undo_paint_pull(stripe, learn_paint_pulls([stripe], scene.rig), scene.rig)
+    profile = triangulate(stripe, scene.rig, RaySheet())
     cloud = remove_outliers(merge_profiles(profile, scene.trajectory, axes=("y",)))
     rays = cloud.points - scene.trajectory.positions[cloud.frame]
     rays /= np.linalg.norm(rays, axis=1, keepdims=True)
@@ -231,11 +232,13 @@ dent is {DEPTH * 1e3:g} mm deep and {WIDTH * 1e3:g} mm wide, half a wave of a co
 between keel and bilge keel, which is what is searched. Only the part of the picture that shows the
 panel is drawn ({SIZE[0]} × {SIZE[1]} of 1920 × 1200 px), {round(TRAVEL / SPACING)} frames a seed;
 the stripe is found by `{EXTRACTOR}`, the default of `murkscan scan`. Diameters are those at a tenth
-of the depth, where this dent is {RIM:.0f} mm wide. The drawing is the true hull in its true place.
+of the depth, where this dent is {RIM:.0f} mm wide. How far growth pulls the stripe is learnt from
+the stripes and taken back, as by `murkscan triangulate`. The drawing is the true hull in its true
+place.
 
-The dents lie up to 10 mm across and 30 mm along the way from the middle of the panel. Patches of
-growth pull the stripe by a hundredth of a millimetre, in every seed alike: dents in one place are
-all off by the same.""",
+The dents lie up to 10 mm across and 30 mm along the way from the middle of the panel. What
+is left of the pull of patches of growth is alike in every seed: dents in one place are all off by
+the same.""",
     )
 
 

@@ -9,12 +9,14 @@ import murkscan as ms
 from murkscan.cli.main import run
 from murkscan.distribute import Dask, Processes, Serial, Threads
 from murkscan.io.images import write_image
+from murkscan.project import TRIANGULATE
 from murkscan.survey.cloud import build_cloud
 from murkscan.survey.export import export_cloud
 from murkscan.survey.extract import extract_recording
 from murkscan.survey.mesh import build_mesh
 from murkscan.survey.scan import begin_scan
 from murkscan.survey.triangulate import triangulate_stripes
+from murkscan.triangulate import undo_paint_pull
 
 from ..mutants import RIG
 from ..scans import plane, scan
@@ -22,6 +24,8 @@ from ..scenes import air_rig
 from .test_cloud import scanned
 
 NUM = 1200
+PULL = 0.5
+"""Of paint, which joins parts [px]."""
 LOST = [*range(3), *range(505, 600), *range(1100, 1200)]
 """At the beginning, over the border of two runs of parts, and at the end, over several parts."""
 
@@ -30,10 +34,12 @@ LOST = [*range(3), *range(505, 600), *range(1100, 1200)]
 def recorded(tmp_path_factory):
     folder = tmp_path_factory.mktemp("recorded")
     (folder / "rig.toml").write_text(RIG)
-    rows = np.arange(64)[:, None]
+    rows, columns = np.arange(64)[:, None], np.arange(96)
     for number in range(NUM):
-        centre = 30 + 8 * np.sin(number / 50)
-        picture = np.tile(20 + 180 * np.exp(-0.5 * ((rows - centre) / 1.5) ** 2), (1, 96))
+        phase = number / 3 + columns / 7
+        paint, change = np.exp(0.3 * np.sin(phase) - 0.3), 0.1 * np.cos(phase)
+        centre = 30 + 8 * np.sin(number / 50) + PULL * change
+        picture = 20 + 180 * paint * np.exp(-0.5 * ((rows - centre) / 1.5) ** 2)
         write_image(folder / "frames" / f"{number}.pgm", picture.astype(np.uint8))
     for number in LOST:
         (folder / "frames" / f"{number}.pgm").write_bytes(b"lost")
@@ -55,6 +61,8 @@ def serial(recorded, tmp_path_factory):
     out = tmp_path_factory.mktemp("serial") / "out"
     result = extract(recorded, out, Serial())
     assert (result.frames, result.skipped) == (NUM - len(LOST), len(LOST))
+    (pull,) = ms.Project(out).finished(TRIANGULATE).result.paint_pulls
+    assert pull.shift == pytest.approx(PULL, rel=0.1)
     return out
 
 
@@ -84,6 +92,15 @@ def test_the_parts_are_the_same_to_the_byte(recorded, serial, tmp_path, executor
     assert different == [[], []]
     there = sorted(file.name for file in (tmp_path / "out").rglob("*") if file.is_file())
     assert there == sorted(file.name for file in serial.rglob("*") if file.is_file())
+
+
+def test_paint_is_taken_back_across_borders_of_parts(recorded, serial):
+    project = ms.Project(serial)
+    found, rig = project.load_stripe(), ms.load_rig(recorded / "rig.toml")
+    pulls = project.finished(TRIANGULATE).result.paint_pulls
+    whole = undo_paint_pull(found, pulls, rig)
+    assert not np.array_equal(whole.pixels, found.pixels)
+    np.testing.assert_array_equal(project.load_profile().pixels, whole.pixels)
 
 
 @pytest.mark.parametrize(

@@ -34,7 +34,7 @@ class Kind(Generic[R]):
 
 
 EXTRACT = Kind("extract", ExtractResult, meaning=3)
-TRIANGULATE = Kind("triangulate", TriangulateResult, meaning=3)
+TRIANGULATE = Kind("triangulate", TriangulateResult, meaning=4)
 MOTION = Kind("motion", MotionResult, meaning=5)
 CLOUD = Kind("cloud", CloudResult, meaning=4)
 MESH = Kind("mesh", MeshResult, meaning=3)

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..types.arrays import Indices, SignedFrameNumbers
 from ..types.background import Attenuation
+from ..types.paint_pull import PaintPull
 from ..types.part_note import Skipped as Skipped
 
 if TYPE_CHECKING:
@@ -43,6 +44,8 @@ class TriangulateResult:
     points: int
     dropped: int
     """Centres whose ray does not meet the sheet in front of the camera."""
+    paint_pulls: tuple[PaintPull, ...] = ()
+    """How far paint had pulled the centres of each laser, where that is seen; it was taken back."""
 
 
 @dataclass(frozen=True)

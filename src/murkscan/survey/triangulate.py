@@ -6,11 +6,21 @@ from dataclasses import dataclass
 from ..distribute import AbstractExecutor, Threads
 from ..errors import Degenerate
 from ..project import EXTRACT, TRIANGULATE, Project, TriangulateResult, describe
-from ..triangulate import AbstractTriangulation, triangulate
+from ..triangulate import (
+    AbstractTriangulation,
+    learn_paint_pulls,
+    triangulate,
+    undo_paint_pull,
+)
+from ..types.paint_pull import PaintPull
 from ..types.profile import Profile
 from ..types.rig import Rig
+from ..types.stripe import Stripe
 from .progress import Progress, silent
 from .stage_runner import run_stage
+
+_SAMPLES = 16
+"""Parts, spread over the recording, from which the pull of paint is learnt."""
 
 
 def triangulate_stripes(
@@ -42,8 +52,9 @@ def triangulate_stripes(
         inputs={"extract": source.digest, "rig": describe(rig)},
     )
 
-    def make(parts: list[int]) -> TriangulateResult:
-        job = _Job(project, rig, method)
+    def make(prepared: tuple[list[int], tuple[PaintPull, ...]]) -> TriangulateResult:
+        parts, pulls = prepared
+        job = _Job(project, rig, method, frozenset(parts), pulls)
         points = _triangulate_parts(job, parts, executor or Threads(), progress)
         if source.result.points and not points:
             raise Degenerate(
@@ -51,10 +62,12 @@ def triangulate_stripes(
                 "front of the camera: check the sign of baseline_mm or distance_mm, and the angle, "
                 "in the rig file."
             )
-        return TriangulateResult(points, dropped=source.result.points - points)
+        return TriangulateResult(points, source.result.points - points, pulls)
 
-    def prepare() -> list[int]:
-        return [part for part, _ in project.load_stripe_parts()]
+    def prepare() -> tuple[list[int], tuple[PaintPull, ...]]:
+        parts = [part for part, _ in project.load_stripe_parts()]
+        sample = parts[:: -(-len(parts) // _SAMPLES) or 1]
+        return parts, learn_paint_pulls(map(project.load_stripe_part, sample), rig)
 
     return run_stage(project, stage, make, prepare=prepare, progress=progress)
 
@@ -66,11 +79,21 @@ class _Job:
     project: Project
     rig: Rig
     method: AbstractTriangulation
+    parts: frozenset[int]
+    """All parts of the recording."""
+    pulls: tuple[PaintPull, ...]
 
     def triangulate(self, part: int) -> tuple[int, Profile]:
         """Make one part."""
         stripe = self.project.load_stripe_part(part)
+        if self.pulls:
+            stripe = undo_paint_pull(stripe, self.pulls, self.rig, beside=self._load_beside(part))
         return part, triangulate(stripe, self.rig, self.method)
+
+    def _load_beside(self, part: int) -> Stripe:
+        """Read the parts before and after one."""
+        near = [self.project.load_stripe_part(p) for p in (part - 1, part + 1) if p in self.parts]
+        return Stripe.concatenate(near)
 
 
 def _triangulate_parts(

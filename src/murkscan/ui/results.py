@@ -13,6 +13,7 @@ from ..project.results import (
     ViewResult,
 )
 from ..types.lengths import in_mm
+from ..types.paint_pull import PaintPull
 
 _FEW_STRIPES = 0.5
 """Share of frames without a stripe from which that is worth a word of advice."""
@@ -75,11 +76,22 @@ def _(result: TriangulateResult) -> str:
 
 @tell_quality.register
 def _(result: TriangulateResult) -> tuple[str, ...]:
-    if not result.dropped:
-        return ("every stripe centre gave a point",)
-    return (
+    dropped = (
         f"{result.dropped:,} stripe centres gave no point: their ray does not meet the laser's "
-        "sheet in front of the camera",
+        "sheet in front of the camera"
+    )
+    return (
+        dropped if result.dropped else "every stripe centre gave a point",
+        *(_tell_pull(pull) for pull in result.paint_pulls),
+    )
+
+
+def _tell_pull(pull: PaintPull) -> str:
+    """Say what was taken back, where the stripe's brightness changes by a tenth."""
+    return (
+        f"laser {pull.laser}: where paint changes the brightness by 10 % from frame to frame, it "
+        f"had pulled the stripe by {0.1 * abs(pull.shift):.4f} px "
+        f"(1σ {0.1 * pull.sigma:.4f} px), which was taken back"
     )
 
 
