@@ -109,7 +109,7 @@ def test_one_flipped_bit_is_noticed_when_the_file_is_read(project, name, place):
 
 def test_check_names_what_changed_and_counts_what_is_of_others(project, capsys):
     assert run(["check", str(project.root)]) == 0
-    assert "1 files as they were written" in capsys.readouterr().out
+    assert "1 file as it was written" in capsys.readouterr().out
     (project.root / "cloud/mine.txt").write_text("mine")
     with (project.root / "cloud/cloud.ply").open("r+b") as file:
         file.seek(1000)

@@ -161,6 +161,7 @@ def test_a_report_is_headed_and_acceptance_and_control_points_are_offered(opened
 def test_a_rig_that_is_not_built_yet_is_described_and_planned(opened, folder):
     page, faults, _ = opened
     page.get_by_role("link", name="Rig", exact=True).click()
+    page.locator("input[name=rig]").wait_for()
     page.wait_for_function("() => document.querySelector('input[name=rig]').value !== 'rig.toml'")
     said = {"rig": "boat.toml", "size-px": "720x576", "view-deg": "66", "baseline-mm": "300",
             "angle-deg": "65", "temperature-c": "15", "salinity-psu": "35"}  # fmt: skip
