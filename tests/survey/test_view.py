@@ -13,7 +13,7 @@ from murkscan.mesh import GridMesh
 from murkscan.project import CLOUD, MEASURE, MESH, CloudResult, MeasureResult, MeshResult, Project
 from murkscan.survey.compared import compare_models
 from murkscan.survey.measured import measurement_files
-from murkscan.survey.shown import DEVIATION
+from murkscan.survey.shown import DEVIATION, load_surface
 from murkscan.survey.view import draw_views
 from murkscan.types.deviation import Deviation
 from murkscan.view import render_viewer
@@ -139,7 +139,9 @@ def dives(tmp_path):
 
 
 def _compare(now, then, *, align=True):
-    return compare_models(now, then, align=align, deviation=DEVIATION, most=10**6)
+    return compare_models(
+        now, load_surface(now), then, align=align, deviation=DEVIATION, most=10**6
+    )
 
 
 def test_before_is_laid_on_after_and_the_page_says_by_how_much(dives):

@@ -30,12 +30,19 @@ class Compared:
 
 
 def compare_models(
-    project: Project, other: Project, *, align: bool, deviation: str, most: int
+    project: Project,
+    surface: Mesh | None,
+    other: Project,
+    *,
+    align: bool,
+    deviation: str,
+    most: int,
 ) -> Compared:
     """Load two scans, and lay the second on the first as `measure deviation` lays a reference.
 
     Args:
         project: The scan that stays.
+        surface: Its surface, as `load_surface` gives it.
         other: The one that is laid on it.
         align: Whether to lay it there; otherwise it stays where its poses put it.
         deviation: As for `load_model`, of the first.
@@ -46,8 +53,8 @@ def compare_models(
         MissingResult: A stage has not been finished.
         FormatError: A file is damaged.
     """
-    own, others = load_surface(project), load_surface(other)
-    stays = load_model(project, own, most=most, deviation=deviation)
+    others = load_surface(other)
+    stays = load_model(project, surface, most=most, deviation=deviation)
     moves = load_model(other, others, most=most)
     named = [(stays, folder_of(project)), (moves, folder_of(other))]
     models = [replace(model, name=name) for model, name in named if model is not None]
@@ -56,7 +63,7 @@ def compare_models(
     first, second = models
     if not align:
         return Compared(models, "Both lie where their poses put them.", None)
-    if own is None or others is None:
+    if surface is None or others is None:
         text = "Both lie where their poses put them: without two surfaces nothing can be aligned."
         return Compared(models, text, None)
     alignment = _lay(others, other, project)

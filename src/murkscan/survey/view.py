@@ -72,8 +72,9 @@ def draw_views(
     def prepare() -> tuple[Mesh | None, Compared]:
         surface = load_surface(project)
         if other is not None:
-            compared = compare_models(project, other, align=align, deviation=deviation, most=most)
-            return surface, compared
+            return surface, compare_models(
+                project, surface, other, align=align, deviation=deviation, most=most
+            )
         model = load_model(project, surface, most=most, deviation=deviation)
         return surface, Compared([] if model is None else [model], "", None)
 
