@@ -33,8 +33,15 @@ _FIXED = 1e-9
 """Standard deviation of what no reading can tell, and what is stated as without error."""
 _ORIGIN = 1e-6
 """Standard deviation of the first place where nothing measured it: the world begins there [m]."""
-_CLOCK_STEP = 1e-3
-"""Step of the central difference by which a prediction changes with time [s]."""
+_CLOCK_STEP = LASTING / 2
+"""Step of the central difference by which a prediction changes with the clock [s]. Over shorter
+times than an acceleration lasts a path follows its log's noise: rates that are noise would seem to
+tell the clock, and pull it, since the same noise is in what they are to explain. A rate over longer
+times goes with the true one and hardly with the noise of one reading: an instrumental variable.
+
+Sargan, The estimation of economic relationships using instrumental variables, Econometrica 26(3),
+1958.
+"""
 
 
 @dataclass(frozen=True, eq=False)
