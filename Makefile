@@ -19,7 +19,7 @@ hello:
 # What the tests start compiles Python anew each time unless Python may keep what it has compiled.
 test: check
 	env -u PYTHONDONTWRITEBYTECODE OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest --dist loadfile \
-	  -n $$($(BIN)/python -c 'import os; print((os.cpu_count() or 1) + 1)')
+	  --no-loadscope-reorder -n $$($(BIN)/python -c 'import os; print((os.cpu_count() or 1) + 1)')
 
 check: $(VENV)/dev
 	$(BIN)/ruff format --check .

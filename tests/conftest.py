@@ -1,12 +1,16 @@
 """What all tests share."""
 
+import os
 import signal
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from filelock import FileLock
 from hypothesis import settings
 from jaxtyping import config
+
+from . import late  # noqa: F401 - named in pyproject.toml, and found there once it is imported
 
 settings.register_profile("murkscan", deadline=None)  # a slow machine is no fault of the code
 settings.load_profile("murkscan")
@@ -16,6 +20,27 @@ SHARED = Path(__file__).resolve().parents[2] / "shared"
 DATA, FAULTS = SHARED / "data", SHARED / "faults"
 RUNS = ("cli", "report", "studio", "survey")
 """Folders whose tests run what rooms do together; the rooms' own tests check the types."""
+LONG = (
+    "extract/test_extractors.py", "measure/test_intervals.py", "adjust/test_stated_errors.py",
+    "survey/test_simulate.py", "geometry/test_alignment.py", "calibrate/test_mount.py",
+    "test_examples.py", "studio/test_clicks.py", "survey/test_kills.py", "survey/test_demo.py",
+    "survey/test_scan.py", "survey/test_cloud.py", "extract/test_real_flaws.py",
+    "extract/test_murk.py", "cli/test_commands.py", "capture/test_fields.py",
+)  # fmt: skip
+"""Files that take half a minute or more. They are run first, so that no core is left with one when
+all else is done; and those that begin together compile different loops, not the same ones each."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Put the long files first."""
+    order = {name: place for place, name in enumerate(LONG)}
+
+    def place(item: pytest.Item) -> int:
+        name = item.path.name
+        return order.get(f"{item.path.parent.name}/{name}", order.get(name, len(LONG)))
+
+    items.sort(key=place)
+
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -56,11 +81,19 @@ def fault() -> Callable[[str], Path]:
 
 @pytest.fixture(scope="session")
 def hull(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Give a simulated recording in three parts, of 360 × 288: frames/, rig.toml, truth/."""
+    """Give a simulated recording in three parts, of 360 × 288: frames/, rig.toml, truth/.
+
+    All processes of a run share it, and one of them makes it.
+    """
     from murkscan.survey.simulate import simulate_recording
 
     from .scenes import hull_scene, smaller
 
-    folder = tmp_path_factory.mktemp("hull")
-    simulate_recording(smaller(hull_scene(num_frames=130), 2), folder)
+    base = tmp_path_factory.getbasetemp()
+    folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "hull"
+    with FileLock(folder.with_suffix(".lock")):
+        if not folder.exists():
+            begun = tmp_path_factory.mktemp("hull")
+            simulate_recording(smaller(hull_scene(num_frames=130), 2), begun)
+            begun.rename(folder)
     return folder

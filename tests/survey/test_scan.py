@@ -148,7 +148,7 @@ def test_a_killed_scan_goes_on_and_gives_the_same(scanned, hull, tmp_path):
     child.kill()
     assert child.wait() != 0, "the scan was done before it could be killed"
     written = (out / "extract/frames/000000.json").stat().st_mtime_ns
-    ms.scan(*_open(hull), MOTION, out=out)
+    _make_cloud(*_open(hull), out)
     assert (out / "extract/frames/000000.json").stat().st_mtime_ns == written
     again = (out / "cloud/cloud.ply").read_bytes()
     assert again == (scanned.root / "cloud/cloud.ply").read_bytes()
