@@ -42,7 +42,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=place)
 
 
-
 @pytest.fixture(scope="module", autouse=True)
 def _check_types(request: pytest.FixtureRequest) -> Iterator[None]:
     """Check types and shapes of arrays, but for whole runs and tests that are marked.
