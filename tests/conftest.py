@@ -24,7 +24,7 @@ LONG = (
     "extract/test_extractors.py", "measure/test_intervals.py", "adjust/test_stated_errors.py",
     "survey/test_simulate.py", "geometry/test_alignment.py", "calibrate/test_mount.py",
     "test_examples.py", "studio/test_clicks.py", "survey/test_kills.py", "survey/test_demo.py",
-    "survey/test_scan.py", "survey/test_cloud.py", "extract/test_real_flaws.py",
+    "survey/test_scan.py", "extract/test_real_flaws.py",
     "extract/test_murk.py", "cli/test_commands.py", "capture/test_fields.py",
 )  # fmt: skip
 """Files that take half a minute or more. They are run first, so that no core is left with one when

@@ -35,6 +35,10 @@ def step(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return np.where(y > 0, 0.5, 0.47) + 0 * x
 
 
+def waves(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    return 0.5 + 0.008 * np.sin(60 * x) * np.cos(50 * y)
+
+
 def holed(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """A wall with a round hole of 20 mm radius."""
     return np.where(x * x + y * y < 0.02**2, np.nan, 0.5)

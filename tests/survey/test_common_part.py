@@ -16,10 +16,9 @@ from murkscan.types.rig import Rig
 from murkscan.types.rig_covariance import RigCovariance
 from murkscan.types.trajectory import Trajectory
 
-from ..projects import SCAN
+from ..projects import SCAN, scanned
 from ..scans import plane, scan
 from ..scenes import air_rig
-from .test_cloud import scanned
 
 LASERS = tuple(Laser.from_baseline_angle(b, 1.2, "x") for b in (0.2, 0.4))
 NAMES = ("camera.focal_length[0]", "laser[0].distance", "laser[1].distance")

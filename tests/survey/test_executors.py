@@ -19,9 +19,9 @@ from murkscan.survey.triangulate import triangulate_stripes
 from murkscan.triangulate import undo_paint_pull
 
 from ..mutants import RIG
+from ..projects import scanned
 from ..scans import plane, scan
 from ..scenes import air_rig
-from .test_cloud import scanned
 
 NUM = 1200
 PULL = 0.5

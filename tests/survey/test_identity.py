@@ -11,9 +11,9 @@ from murkscan.project import Project
 from murkscan.survey.cloud import build_cloud
 from murkscan.types.profile import Profile
 
+from ..projects import scanned
 from ..scans import plane, scan
 from ..scenes import air_rig
-from .test_cloud import scanned
 
 KEY = ("laser", "frame", "scan_line", "branch")
 
