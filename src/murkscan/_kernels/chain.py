@@ -49,7 +49,7 @@ def follow_chain(
         reach = min(_GAP, u)
         for gap in range(1, reach + 1):
             fade = np.exp(scale[u - gap] - scale[u - 1])
-            for j in range(most):
+            for j in range(counts[u - gap]):
                 faded[gap - 1, j] = fade * ahead[u - gap, j]
         total = 0.0
         for k in range(counts[u]):
@@ -57,7 +57,7 @@ def follow_chain(
                 continue
             reached = 0.0
             for gap in range(reach):
-                for j in range(most):
+                for j in range(counts[u - gap - 1]):
                     reached += faded[gap, j] * links[u, gap, k, j]
             ahead[u, k] = (first + reached) * evidence[u, k]
             total += ahead[u, k]
@@ -100,7 +100,7 @@ def _run_back(
             for k in range(counts[u + gap]):
                 onward = faded * evidence[u + gap, k] * behind[u + gap, k]
                 if onward != 0.0:
-                    for j in range(most):
+                    for j in range(counts[u]):
                         reached[j] += onward * links[u + gap, gap - 1, k, j]
     return behind
 
@@ -125,11 +125,10 @@ def _weigh_links(
             for k in range(counts[u]):
                 if evidence[u, k] == 0.0:
                     continue
-                _weigh_changes(logs[u, k], logs[u - gap], bends[4] * np.sqrt(gap), like)
-                link = links[u, gap - 1, k]
-                for j in range(most):
+                link, before = links[u, gap - 1, k], logs[u - gap, : counts[u - gap]]
+                _weigh_changes(logs[u, k], before, bends[4] * np.sqrt(gap), like)
+                for j in range(len(before)):
                     link[j] = kept * jump * like[j]
-                for j in range(counts[u - gap]):
                     step = abs(positions[u, k] - positions[u - gap, j])
                     if step < _FAR * gap:
                         grain = max(grains[u, k], grains[u - gap, j])

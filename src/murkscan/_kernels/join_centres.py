@@ -3,14 +3,14 @@
 import numpy as np
 
 from .cholesky import first_variance, solve, substitute
-from .compiled import loop, part
+from .compiled import SUMS, loop, part
 from .slopes_around import first_from, measure_slopes
 
 _SIZE = 5
 """Parameters: centre, its slope over lines, its speed over frames, its curvature over both."""
 _TURNS = 3
-_MOST, _COLUMNS = 512, 8
-"""Neighbours of a centre that are looked at, and what is known of each."""
+_MOST, _COLUMNS = 512, 10
+"""Neighbours of a centre that are looked at, and what is known of each; the last is for sums."""
 _BESIDE, _ALL, _OWN = 2.0, 8.0, 0.7
 """1σ of the Gaussians by which scan lines count, where it is measured how far the surface is off:
 those around a centre, and its own [lines]."""
@@ -51,14 +51,16 @@ def join_centres(
     """
     joined = np.empty((last - first, 2))
     noise = sigma**2 + common**2 + drawn**2
+    roots = np.sqrt(noise)
     near = np.empty((_COLUMNS, _MOST))
     sums = np.empty((_SUMS, 2 * int(reach) + 1))
+    bells = _draw_bells(sums.shape[1])
     for i in range(first, last):
         count = _gather(
-            i, lines, times, centres, noise, common, drawn, starts, reach, rough[i], near
+            i, lines, times, centres, noise, roots, common, drawn, starts, reach, rough[i], near
         )
         off, joined[i - first, 1] = _join_one(
-            near, count, sigma[i] ** 2, drawn[i] ** 2, noise[i], length, alone, same, seen, sums
+            near, count, sigma[i] ** 2, drawn[i] ** 2, noise[i], length, alone, same, seen, sums, bells
         )
         joined[i - first, 0] = centres[i] + off
     return joined
@@ -67,7 +69,7 @@ def join_centres(
 @part()
 def _join_one(
     near: np.ndarray, count: int, own: float, drawn: float, variance: float, length: float,
-    alone: float, same: float, seen: float, sums: np.ndarray,
+    alone: float, same: float, seen: float, sums: np.ndarray, bells: np.ndarray,
 ) -> tuple[float, float]:  # fmt: skip
     """Put a bent surface through one centre's neighbours; give by how much it is off, and 1σ.
 
@@ -96,14 +98,15 @@ def _join_one(
     if not _sum_misfits(near, count, p, sums):
         return p[0], np.sqrt(known + together**2)
     misfit = max(
-        _measure_misfit(sums, seen, variance, _BESIDE), _measure_misfit(sums, seen, variance, _ALL)
+        _measure_misfit(sums, seen, variance, bells[0]),
+        _measure_misfit(sums, seen, variance, bells[1]),
     )
-    off, unsure = _measure_own(sums, alone + same - seen, same)
+    off, unsure = _measure_own(sums, alone + same - seen, same, bells[2])
     share = misfit / (misfit + unsure)
     return p[0] + share * off, np.sqrt((1.0 - share**2) * known + share * unsure + together**2)
 
 
-@part(error_model="numpy")
+@part(error_model="numpy", fastmath=SUMS)
 def _normal_equations(
     near: np.ndarray, count: int, p: np.ndarray, excess: float, robust: float,
     matrix: np.ndarray, right: np.ndarray,
@@ -142,7 +145,7 @@ def _normal_equations(
     return misfits / max(weights, 1.0)
 
 
-@part(error_model="numpy")
+@part(error_model="numpy", fastmath=SUMS)
 def _weigh_errors(
     root: np.ndarray, near: np.ndarray, count: int, p: np.ndarray, excess: float, sums: np.ndarray
 ) -> float:  # fmt: skip
@@ -154,7 +157,7 @@ def _weigh_errors(
     answer[0] = 1.0
     substitute(root, answer)
     along, later, off, noise, far, own = near[0], near[1], near[2], near[3], near[4], near[5]
-    common, drawn = near[6], near[7]
+    common, drawn, roots, shares = near[6], near[7], near[8], near[9]
     p0, p1, p2, p3, p4 = p[0], p[1], p[2], p[3], p[4]
     b0, b1, b2, b3, b4 = answer[0], answer[1], answer[2], answer[3], answer[4]
     together, middle = 0.0, sums.shape[1] // 2
@@ -164,13 +167,14 @@ def _weigh_errors(
         aa, tt = a * a, t * t
         miss = off[k] - (p0 + p1 * a + p2 * t + p3 * aa + p4 * tt)
         share = b0 + b1 * a + b2 * t + b3 * aa + b4 * tt
-        share /= noise[k] + own[k] + excess * far[k] + 0.25 * miss * miss
-        together += share * common[k]
-        error = share * np.sqrt(noise[k])
-        b = middle + int(np.rint(a))
+        shares[k] = share / (noise[k] + own[k] + excess * far[k] + 0.25 * miss * miss)
+        together += shares[k] * common[k]
+    for k in range(count):
+        error = shares[k] * roots[k]
+        b = middle + int(np.rint(along[k]))
         sums[_TOTAL, b] += error
         sums[_SQUARES, b] += error * error
-        sums[_PULL, b] += share * drawn[k]
+        sums[_PULL, b] += shares[k] * drawn[k]
     return together
 
 
@@ -178,34 +182,48 @@ def _weigh_errors(
 def _sum_misfits(near: np.ndarray, count: int, p: np.ndarray, sums: np.ndarray) -> bool:
     """Sum up by scan line what the surface misses; tell whether any line has several frames."""
     along, later, off, noise, drawn = near[0], near[1], near[2], near[3], near[7]
+    roots, misses = near[8], near[9]
     p0, p1, p2, p3, p4 = p[0], p[1], p[2], p[3], p[4]
     middle, shows = sums.shape[1] // 2, False
-    sums[:] = 0.0
     for k in range(count):
         a, t = along[k], later[k]
-        weight = 1.0 / noise[k]
-        miss = weight * (off[k] - (p0 + p1 * a + p2 * t + p3 * a * a + p4 * t * t))
-        b = middle + int(np.rint(a))
+        misses[k] = (off[k] - (p0 + p1 * a + p2 * t + p3 * a * a + p4 * t * t)) / noise[k]
+    sums[:] = 0.0
+    for k in range(count):
+        root, miss = 1.0 / roots[k], misses[k]
+        weight = root * root
+        b = middle + int(np.rint(along[k]))
         shows |= sums[_WEIGHTS, b] > 0.0
         sums[_WEIGHTS, b] += weight
         sums[_PAIRS, b] += weight * weight
         sums[_MISSES, b] += miss
         sums[_TWICE, b] += miss * miss
-        sums[_ROOTS, b] += np.sqrt(weight)
+        sums[_ROOTS, b] += root
         sums[_DRAWN, b] += weight * drawn[k]
     return shows
 
 
+@part()
+def _draw_bells(size: int) -> np.ndarray:
+    """Give how much each scan line counts where it is measured how far the surface is off."""
+    bells = np.empty((3, size))
+    for row, reach in enumerate((_BESIDE, _ALL, _OWN)):
+        for b in range(size):
+            bells[row, b] = np.exp(-0.5 * ((b - size // 2) / reach) ** 2)
+    return bells
+
+
 @part(error_model="numpy")
-def _measure_own(sums: np.ndarray, alone: float, same: float) -> tuple[float, float]:
+def _measure_own(
+    sums: np.ndarray, alone: float, same: float, bell: np.ndarray
+) -> tuple[float, float]:
     """Give by how much the surface is off in its own scan line, and the variance of that.
 
     A share `alone` of each centre's variance is noise of its frame, a share `same` of all frames.
     """
-    middle = sums.shape[1] // 2
     off, total, noise, pull = 0.0, 0.0, 0.0, 0.0
     for b in range(sums.shape[1]):
-        near = np.exp(-0.5 * ((b - middle) / _OWN) ** 2)
+        near = bell[b]
         weight = sums[_WEIGHTS, b]
         off += near * sums[_MISSES, b]
         total += near * weight
@@ -215,16 +233,15 @@ def _measure_own(sums: np.ndarray, alone: float, same: float) -> tuple[float, fl
 
 
 @part(error_model="numpy")
-def _measure_misfit(sums: np.ndarray, seen: float, own: float, reach: float) -> float:
+def _measure_misfit(sums: np.ndarray, seen: float, own: float, bell: np.ndarray) -> float:
     """Measure the variance that frames have in common beside noise that is alike in them.
 
     It is the mean product of what the surface misses in one frame and in another, with 0 for one
     pair as sure as the centre itself, of a variance `own`: far lines alone tell nothing.
     """
-    middle = sums.shape[1] // 2
     products, pairs, noise = 0.0, 2.0 / own**2, 0.0
     for b in range(sums.shape[1]):
-        near = np.exp(-0.5 * ((b - middle) / reach) ** 2)
+        near = bell[b]
         weight = sums[_WEIGHTS, b]
         expected = seen * (sums[_ROOTS, b] ** 2 - weight) + sums[_DRAWN, b] ** 2
         products += near * (sums[_MISSES, b] ** 2 - sums[_TWICE, b] - expected)
@@ -239,15 +256,15 @@ def _measure_misfit(sums: np.ndarray, seen: float, own: float, reach: float) -> 
 @part()
 def _gather(
     i: int, lines: np.ndarray, times: np.ndarray, centres: np.ndarray, noise: np.ndarray,
-    common: np.ndarray, drawn: np.ndarray, starts: np.ndarray, reach: float, rough: float,
-    near: np.ndarray,
+    roots: np.ndarray, common: np.ndarray, drawn: np.ndarray, starts: np.ndarray, reach: float,
+    rough: float, near: np.ndarray,
 ) -> int:  # fmt: skip
     """List what may be the same surface, and give how many there are.
 
     Each has its distance in lines and in frames, the difference of centres beside how the surface
     slants there (a steep one's neighbours would count on one side only), its variance, its share of
-    the misfit, what the surface's roughness adds, and what it errs by as others do: all, and those
-    of its scan line.
+    the misfit, what the surface's roughness adds, what it errs by as others do: all, and those of
+    its scan line, and the root of its variance.
     """
     count = 0
     lean, drift = measure_slopes(i, lines, times, centres, starts)
@@ -259,8 +276,8 @@ def _gather(
                 break
             later = times[j] - times[i]
             off = centres[j] - centres[i] - lean * along - drift * later
-            bound = 3.0 * np.sqrt(noise[j] + noise[i]) + 0.3 * abs(along) + 0.4 * abs(later)
-            if abs(off) >= bound:
+            beyond = abs(off) - 0.3 * abs(along) - 0.4 * abs(later)
+            if beyond > 0.0 and beyond * beyond >= 9.0 * (noise[j] + noise[i]):
                 continue
             far = 1.0 + (along * along + 4.0 * later * later) / 9.0
             near[0, count], near[1, count], near[2, count] = along, later, off
@@ -269,5 +286,6 @@ def _gather(
             near[5, count] = (rough * far) ** 2 if j != i else 0.0
             near[6, count] = common[j]
             near[7, count] = drawn[j]
+            near[8, count] = roots[j]
             count += 1
     return count

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Int
 
+from .._kernels.bends import count_signs, third_differences
 from ..types.arrays import Scalars
 from ..types.background import Noise
 from .scatter import APART, ENOUGH, JUMP, MEDIAN, THIRD
@@ -84,12 +85,12 @@ class Alike:
         """
         bends, uneven = _list_bends(lines, straight, sigma, drawn, starts)
         draws = _measure_draws(bends[-1], uneven[-1])
-        if min(int(np.isfinite(each).sum()) for each in bends) <= 3 * ENOUGH:
+        sizes = [np.abs(each[np.isfinite(each)]) for each in bends]
+        if min(map(len, sizes)) <= 3 * ENOUGH:
             return cls(drawn=draws)
         same = [_correlate(each) for each in bends]
-        spread = [(float(np.nanmedian(np.abs(each))) / MEDIAN) ** 2 for each in bends]
-        copied = _correlate(np.where(np.abs(bends[0]) < _EDGE, bends[0], np.nan))
-        copied = min(max(copied, 0.0), _MOST)
+        spread = [(float(np.median(each)) / MEDIAN) ** 2 for each in sizes]
+        copied = min(max(_correlate(bends[0], _EDGE), 0.0), _MOST)
         if noise.smoothed:
             blocks = max(min(np.array(same) * spread / _BENT), 0.0)
             seen = copied + blocks
@@ -116,19 +117,9 @@ def _list_bends(
     table = np.full((3, len(starts) - 1, int(place.max()) + 1), np.nan)
     frame = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
     table[:, frame, place] = straight, sigma**2, drawn**2
-    width = table.shape[2]
-    bends, uneven = [], []
-    for apart in (step * each for each in APART):
-        four = [table[:, :, k * apart : max(width - (3 - k) * apart, 0)] for k in range(4)]
-        total = sum(weight * one[0] for weight, one in zip(THIRD, four, strict=True))
-        spread, more = (
-            sum(weight**2 * one[row] for weight, one in zip(THIRD, four, strict=True))
-            for row in (1, 2)
-        )
-        whole = np.abs(total) < JUMP * np.linalg.norm(THIRD)
-        bends.append(np.where(whole, total / np.sqrt(spread), np.nan))
-        uneven.append(np.sqrt(more / spread))
-    return bends, uneven
+    jump = JUMP * float(np.linalg.norm(THIRD))
+    both = [third_differences(table, step * each, THIRD, jump) for each in APART]
+    return [bends for bends, _ in both], [uneven for _, uneven in both]
 
 
 def _measure_draws(bends: _Bends, uneven: _Bends) -> float:
@@ -144,19 +135,18 @@ def _measure_draws(bends: _Bends, uneven: _Bends) -> float:
     return math.sqrt(np.clip(np.median(known), 0.0, 1.0))
 
 
-def _correlate(bends: _Bends) -> float:
+def _correlate(bends: _Bends, most: float = math.inf) -> float:
     """Estimate the correlation of frames by how often signs agree; 0 where it may be chance.
+
+    Only what is less than `most` counts.
 
     References:
         Blomqvist, On a measure of dependence between two random variables, Annals of Mathematical
         Statistics 21(4), 1950 (the quadrant correlation).
     """
-    signs = np.nan_to_num(np.sign(bends))
-    shown = np.abs(signs).sum(axis=0)
-    pairs = float(np.sum(shown * (shown - 1)))
-    if pairs == 0.0:
+    pairs, agree = count_signs(bends, most)
+    if pairs == 0:
         return 0.0
-    agree = float(np.sum(signs.sum(axis=0) ** 2 - shown)) / pairs
-    correlation = math.sin(0.5 * math.pi * agree)
+    correlation = math.sin(0.5 * math.pi * agree / pairs)
     chance = 0.5 * math.pi * math.sqrt(2 * _EACH / pairs)
     return correlation * max(1.0 - (chance / max(abs(correlation), chance)) ** 2, 0.0)

@@ -91,12 +91,12 @@ class Ridges:
         lines = self.lines
         return replace(self, lines=ScanLines.bare(lines.frame, lines.axis, slope=lines.slope))
 
-    @property
+    @cached_property
     def exist(self) -> Marks:
         """Tell which entries are ridges."""
         return np.arange(self.positions.shape[1]) < self.counts[:, None]
 
-    @property
+    @cached_property
     def straight(self) -> Float[np.ndarray, "lines most"]:
         """Positions from those of an even wall: what follows a surface steps little."""
         return self.positions - self._slope * np.arange(len(self.counts))[:, None]
@@ -229,6 +229,11 @@ def find_frame_ridges(near: Mapping[int, Scored], bank: FilterBank) -> Ridges:
     _add_plateaus(own.lines, bank, positions, heights, counts, shapes)
     if own.lines.hidden is not None:
         drop_hidden(positions, heights, counts, shapes, own.lines.hidden)
+    # Few lines have as many ridges as are looked for: what none has is carried along no further.
+    most = max(int(counts.max(initial=0)), 1)
+    positions, heights, shapes = (
+        np.ascontiguousarray(each[:, :most]) for each in (positions, heights, shapes)
+    )
     grains = np.array([*(float(each.binning) for each in bank.filters), 1.0])[shapes]
     reach = float(bank.filters[0].reach * bank.filters[0].binning)
     tails, edges = bank.tails(own.lines), np.zeros(positions.shape)
