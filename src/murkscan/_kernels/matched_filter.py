@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .compiled import loop
+from .compiled import loop, part
 
 
 @loop(fastmath=True, error_model="numpy")
@@ -43,26 +43,51 @@ def score_pixels(
 
 
 @loop(fastmath=True, error_model="numpy")
-def add_neighbour(
-    scores: np.ndarray, other: np.ndarray, down: int, across: int, bound: float, correlation: float,
-    total: np.ndarray,
-) -> None:  # fmt: skip
-    """Add the scores of another frame, by at most `bound` more than a frame's own.
+def add_neighbours(
+    scores: np.ndarray, before: np.ndarray, after: np.ndarray, back: np.ndarray, bound: float,
+    correlation: float,
+) -> np.ndarray:  # fmt: skip
+    """Add the scores of two other frames, by at most `bound` more than a frame's own, to unit noise.
 
-    Where the other frame is a field of the other rows, its pixels lie half a pixel off: then the
-    scores there and (down, across) further back are added up and scaled by `correlation`.
+    Where its sum with others says less, a frame's own score counts. `back` has a row for each of
+    the others: whether there is such a frame, and how many pixels and lines its second row around
+    one of these lies further back, where it is a field of the other rows. Then its pixels lie half
+    a pixel off: the scores of both are added up and scaled by `correlation`.
     """
+    total = np.empty(scores.shape, np.float32)
+    share = np.float32(1.0 / np.sqrt(1.0 + back[0, 0] + back[1, 0]))
+    for v in range(len(scores)):
+        own, row = scores[v], total[v]
+        for u in range(len(own)):
+            row[u] = own[u]
+        if back[0, 0]:
+            _add_row(own, before, v, back[0, 1], back[0, 2], bound, correlation, row)
+        if back[1, 0]:
+            _add_row(own, after, v, back[1, 1], back[1, 2], bound, correlation, row)
+        for u in range(len(own)):
+            row[u] = max(row[u] * share, own[u])
+    return total
+
+
+@part(fastmath=True, error_model="numpy")
+def _add_row(
+    own: np.ndarray, other: np.ndarray, v: int, down: int, across: int, bound: float,
+    correlation: float, row: np.ndarray,
+) -> None:  # fmt: skip
+    """Add a row of another frame to the sum of all."""
     # The fields of a picture with an odd number of rows differ by one.
-    length = min(scores.shape[0], other.shape[0])
-    num_lines = min(scores.shape[1], other.shape[1])
-    for v in range(length):
-        near = other[v]
-        far = other[min(max(v - down, 0), length - 1)]
-        if down == 0 and across == 0:
-            for u in range(num_lines):
-                total[v, u] += min(near[u], scores[v, u] + np.float32(bound))
-        else:
-            for u in range(num_lines):
-                beside = far[min(max(u - across, 0), num_lines - 1)]
-                mean = np.float32(correlation) * (near[u] + beside)
-                total[v, u] += min(mean, scores[v, u] + np.float32(bound))
+    length, num_lines = len(other), min(len(own), other.shape[1])
+    if v >= length:
+        return
+    near, far = other[v], other[min(max(v - down, 0), length - 1)]
+    most, weight = np.float32(bound), np.float32(correlation)
+    if down == 0 and across == 0:
+        for u in range(num_lines):
+            row[u] += min(near[u], own[u] + most)
+    elif across == 0:  # the usual case by itself: several numbers at once
+        for u in range(num_lines):
+            row[u] += min(weight * (near[u] + far[u]), own[u] + most)
+    else:
+        for u in range(num_lines):
+            beside = far[min(max(u - across, 0), num_lines - 1)]
+            row[u] += min(weight * (near[u] + beside), own[u] + most)

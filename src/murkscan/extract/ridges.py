@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int8
 
 from .._kernels.blurred_ends import find_blurred_ends
-from .._kernels.matched_filter import add_neighbour
+from .._kernels.matched_filter import add_neighbours
 from .._kernels.ridges import (
     are_near,
     compare_ridges,
@@ -174,6 +174,17 @@ class Ridges:
 
     def agreement(self, other: "Ridges") -> float:
         """Give the share of long, sure stripes that another frame has, too; NaN where few are."""
+        known = self._agreements
+        if other.index not in known:
+            known[other.index] = self._agree(other)
+        return known[other.index]
+
+    @cached_property
+    def _agreements(self) -> dict[int, float]:
+        """With other frames of the recording, by their numbers: each pair is asked for often."""
+        return {}
+
+    def _agree(self, other: "Ridges") -> float:
         long = self.are_sure_and_long
         if long.any(axis=1).mean() < _MUCH:
             return math.nan
@@ -269,15 +280,13 @@ def _find_one_width(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Find what answers one filter: positions [px of the frame's image], heights and counts."""
     matched = bank.filters[number]
-    own = near[0]
-    scores = own.scores[number]
+    scores = near[0].scores[number]
     if len(near) > 1:
-        total = scores.copy()
-        for other in (other for distance, other in near.items() if distance):
-            down, across = _half_rows(own.lines, other.lines, matched.binning)
-            add_neighbour(scores, other.scores[number], down, across, _BOUND, _HALF_ROW, total)
-        total *= np.float32(1 / math.sqrt(len(near)))
-        scores = np.maximum(total, scores, out=total)
+        sides = [near.get(-1, near[0]), near.get(1, near[0])]
+        back = [_half_rows(near[0].lines, side.lines, matched.binning) for side in sides]
+        back = np.column_stack([[-1 in near, 1 in near], back])
+        before, after = (side.scores[number] for side in sides)
+        scores = add_neighbours(scores, before, after, back, _BOUND, _HALF_ROW)
     least, most = bank.search.least, bank.search.most
     margin = min(bank.search.rim * matched.width, (len(scores) - 3) / 2)
     positions, heights, counts = find_ridges(scores, least, most, matched.reach, _LOBE, margin)

@@ -141,6 +141,8 @@ class _Job:
                 moments.append((frame.index, frame.time))
                 stripes.append(Stripe.concatenate(found))
                 candidates.add(frame, stripes[-1])
+            elif moments:
+                break  # the frames after it have been looked at as far as it needs them
         stripe = Stripe.concatenate(stripes)
         note = PartNote(
             frames=tuple(index for index, _ in moments),
