@@ -15,6 +15,3 @@ from numba import njit
 
 loop = partial(njit, cache=True, nogil=True, no_cfunc_wrapper=True)
 part = partial(njit, nogil=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)
-
-SUMS = {"reassoc", "contract", "nsz"}
-"""Freedom to add up in another order, for `fastmath`: several numbers at once, with NaN kept."""

@@ -3,13 +3,13 @@
 import numpy as np
 
 from .cholesky import first_variance, solve, substitute
-from .compiled import SUMS, loop, part
+from .compiled import loop, part
 from .slopes_around import first_from, measure_slopes
 
 _SIZE = 5
 """Parameters: centre, its slope over lines, its speed over frames, its curvature over both."""
 _TURNS = 3
-_MOST, _COLUMNS = 512, 10
+_MOST, _COLUMNS = 512, 12
 """Neighbours of a centre that are looked at, and what is known of each; the last is for sums."""
 _BESIDE, _ALL, _OWN = 2.0, 8.0, 0.7
 """1σ of the Gaussians by which scan lines count, where it is measured how far the surface is off:
@@ -106,7 +106,7 @@ def _join_one(
     return p[0] + share * off, np.sqrt((1.0 - share**2) * known + share * unsure + together**2)
 
 
-@part(error_model="numpy", fastmath=SUMS)
+@part(error_model="numpy")
 def _normal_equations(
     near: np.ndarray, count: int, p: np.ndarray, excess: float, robust: float,
     matrix: np.ndarray, right: np.ndarray,
@@ -120,17 +120,22 @@ def _normal_equations(
     n, a1, a2, a3, a4, t1, t2, t3, t4 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     at, aat, att, aatt, y, ay, ty, aay, tty = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     weights, misfits = 0.0, 0.0
+    counts, shares, excesses = near[9], near[10], near[11]
     p0, p1, p2, p3, p4 = p[0], p[1], p[2], p[3], p[4]
-    for k in range(count):
+    for k in range(count):  # without sums: several at once
         a, t = along[k], later[k]
-        aa, tt = a * a, t * t
         spread = noise[k] + own[k] + excess * far[k]
-        miss = off[k] - (p0 + p1 * a + p2 * t + p3 * aa + p4 * tt)
+        miss = off[k] - (p0 + p1 * a + p2 * t + p3 * a * a + p4 * t * t)
         square = miss * miss
-        w = 1.0 / (spread + robust * square)
+        counts[k] = 1.0 / (spread + robust * square)
         more, most = square - noise[k], 9.0 * noise[k] + 1.0
-        weights += spread * w
-        misfits += (more if more < most else most) * spread * w
+        excesses[k] = (more if more < most else most) * spread * counts[k]
+        shares[k] = spread * counts[k]
+    for k in range(count):
+        a, t, w = along[k], later[k], counts[k]
+        aa, tt = a * a, t * t
+        weights += shares[k]
+        misfits += excesses[k]
         wa, wt, waa, wtt, wy = w * a, w * t, w * aa, w * tt, w * off[k]
         n, a1, t1, a2, t2, at = n + w, a1 + wa, t1 + wt, a2 + waa, t2 + wtt, at + wa * t
         a3, t3, a4, t4 = a3 + waa * a, t3 + wtt * t, a4 + waa * aa, t4 + wtt * tt
@@ -145,7 +150,7 @@ def _normal_equations(
     return misfits / max(weights, 1.0)
 
 
-@part(error_model="numpy", fastmath=SUMS)
+@part(error_model="numpy")
 def _weigh_errors(
     root: np.ndarray, near: np.ndarray, count: int, p: np.ndarray, excess: float, sums: np.ndarray
 ) -> float:  # fmt: skip
@@ -168,8 +173,8 @@ def _weigh_errors(
         miss = off[k] - (p0 + p1 * a + p2 * t + p3 * aa + p4 * tt)
         share = b0 + b1 * a + b2 * t + b3 * aa + b4 * tt
         shares[k] = share / (noise[k] + own[k] + excess * far[k] + 0.25 * miss * miss)
-        together += shares[k] * common[k]
     for k in range(count):
+        together += shares[k] * common[k]
         error = shares[k] * roots[k]
         b = middle + int(np.rint(along[k]))
         sums[_TOTAL, b] += error

@@ -42,7 +42,7 @@ def score_pixels(
     return scores
 
 
-@loop(fastmath=True, error_model="numpy")
+@loop(error_model="numpy")
 def add_neighbours(
     scores: np.ndarray, before: np.ndarray, after: np.ndarray, back: np.ndarray, bound: float,
     correlation: float,
@@ -65,11 +65,12 @@ def add_neighbours(
         if back[1, 0]:
             _add_row(own, after, v, back[1, 1], back[1, 2], bound, correlation, row)
         for u in range(len(own)):
-            row[u] = max(row[u] * share, own[u])
+            scaled = row[u] * share
+            row[u] = scaled if scaled > own[u] else own[u]
     return total
 
 
-@part(fastmath=True, error_model="numpy")
+@part(error_model="numpy")
 def _add_row(
     own: np.ndarray, other: np.ndarray, v: int, down: int, across: int, bound: float,
     correlation: float, row: np.ndarray,
@@ -83,10 +84,12 @@ def _add_row(
     most, weight = np.float32(bound), np.float32(correlation)
     if down == 0 and across == 0:
         for u in range(num_lines):
-            row[u] += min(near[u], own[u] + most)
+            bounded = own[u] + most
+            row[u] += near[u] if near[u] < bounded else bounded
     elif across == 0:  # the usual case by itself: several numbers at once
         for u in range(num_lines):
-            row[u] += min(weight * (near[u] + far[u]), own[u] + most)
+            both, bounded = weight * (near[u] + far[u]), own[u] + most
+            row[u] += both if both < bounded else bounded
     else:
         for u in range(num_lines):
             beside = far[min(max(u - across, 0), num_lines - 1)]

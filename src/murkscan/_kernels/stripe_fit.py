@@ -3,7 +3,7 @@
 import numpy as np
 
 from .cholesky import first_variance, solve
-from .compiled import SUMS, loop, part
+from .compiled import loop, part
 
 _SIZE = 7
 """Parameters: centre, height, log of the core's width, skirt's share, background, its slope, its
@@ -51,7 +51,7 @@ def spread_skirts(
     return skirts
 
 
-@part(fastmath=SUMS)
+@part()
 def _add_bell(profile: np.ndarray, height: float, first: float, step: float) -> None:
     """Add height · exp(-x² / 2) at x = first, first + step, …, by products alone."""
     value = height * np.exp(-0.5 * first * first)
@@ -151,7 +151,7 @@ def _take_step(p: np.ndarray, step: np.ndarray) -> None:
     p[1] = max(p[1], 0.05)
 
 
-@part(fastmath=SUMS)
+@part()
 def _dot(first: np.ndarray, second: np.ndarray, count: int) -> float:
     total = 0.0
     for v in range(count):
@@ -159,7 +159,7 @@ def _dot(first: np.ndarray, second: np.ndarray, count: int) -> float:
     return total
 
 
-@part(error_model="numpy", fastmath=SUMS)
+@part(error_model="numpy")
 def _normal_equations(
     raw: np.ndarray, scan: np.ndarray, skirt: np.ndarray, middle: int, p: np.ndarray,
     noise: np.ndarray, shape: np.ndarray, matrix: np.ndarray, right: np.ndarray, rows: np.ndarray,
