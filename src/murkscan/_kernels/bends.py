@@ -1,4 +1,4 @@
-"""Third differences of centres along a stripe, frame by frame, and how far frames have them alike."""
+"""Third differences of centres along a stripe, and how far frames have them alike."""
 
 import numpy as np
 

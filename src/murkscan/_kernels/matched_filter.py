@@ -47,12 +47,12 @@ def add_neighbours(
     scores: np.ndarray, before: np.ndarray, after: np.ndarray, back: np.ndarray, bound: float,
     correlation: float,
 ) -> np.ndarray:  # fmt: skip
-    """Add the scores of two other frames, by at most `bound` more than a frame's own, to unit noise.
+    """Add the scores of two other frames, by at most `bound` more than a frame's own.
 
-    Where its sum with others says less, a frame's own score counts. `back` has a row for each of
-    the others: whether there is such a frame, and how many pixels and lines its second row around
-    one of these lies further back, where it is a field of the other rows. Then its pixels lie half
-    a pixel off: the scores of both are added up and scaled by `correlation`.
+    The sum has a noise of 1 as well; where it is less, a frame's own score counts. `back` has a row
+    for each of the others: whether there is such a frame, and how many pixels and lines its second
+    row around one of these lies further back, where it is a field of the other rows. Then its
+    pixels lie half a pixel off: the scores of both are added up and scaled by `correlation`.
     """
     total = np.empty(scores.shape, np.float32)
     share = np.float32(1.0 / np.sqrt(1.0 + back[0, 0] + back[1, 0]))

@@ -35,7 +35,7 @@ from .ridges import Ridges, find_frame_ridges
 from .rim import add_rim
 from .row_noise import learn_row_noise
 from .scan_lines import ScanLines
-from .sheets import OtherLasers, expected_slope
+from .sheets import OtherLasers, expected_slope, look_along
 from .stripe_shape import learn_stripe_shapes
 
 _FAINT, _MORE = 15.0, 1.7
@@ -144,31 +144,33 @@ class Murk(AbstractExtractor):
         self, frames: Iterable[Frame], rig: Rig, background: Background, *, laser: int = 0
     ) -> Iterator[Stripe]:
         """Find the stripe in each frame; see `AbstractExtractor.extract`."""
-        if background.levels is None or not background.shapes:
-            raise InputError("Murk needs what it has learnt itself: give what its `learn` gave.")
-        look = partial(
-            ScanLines.of,
-            axis=rig.laser(laser).axis,
-            noise=background.levels,
-            fixed=background.fixed,
-            slope=expected_slope(rig, laser),
-        )
-        yield from self._find(map(look, frames), background, OtherLasers.of(rig, laser), laser)
+        look = look_along(frames, rig, background, laser)
+        return self._find(look, background, OtherLasers.of(rig, laser), laser)
+
+    def extract_soon(
+        self, frames: Iterable[Frame], rig: Rig, background: Background, *, laser: int = 0
+    ) -> Iterator[Stripe]:
+        """Find the same centres, each by its own frame; see `AbstractExtractor.extract_soon`."""
+        look = look_along(frames, rig, background, laser)
+        return self._give(self._centres(look, background, OtherLasers.of(rig, laser)), laser)
 
     def _find(
         self, look: Iterable[ScanLines], background: Background, others: OtherLasers, laser: int
     ) -> Iterator[Stripe]:
         centres = self._centres(look, background, others)
-        assert background.levels is not None  # checked by `extract`
-        for near in with_neighbours(centres, 2):
-            joined = doubt_wide(join_frames(near, noise=background.levels))
-            yield _as_stripe(joined[joined.posterior >= self.min_posterior], laser)
+        assert background.levels is not None  # checked by `look_along`
+        near = with_neighbours(centres, 2)
+        return self._give((join_frames(one, noise=background.levels) for one in near), laser)
+
+    def _give(self, centres: Iterable[Centres], laser: int) -> Iterator[Stripe]:
+        for one in map(doubt_wide, centres):
+            yield _as_stripe(one[one.posterior >= self.min_posterior], laser)
 
     def _centres(
         self, look: Iterable[ScanLines], background: Background, others: OtherLasers
     ) -> Iterator[Centres]:
         noise, shapes = background.levels, background.shapes
-        assert noise is not None  # checked by `extract`
+        assert noise is not None  # by `look_along`
         markov = self._markov(background.rates, background.stays)
         bank = FilterBank.of(shapes, noise, background.search)
         scored = (bank.score(lines) for lines in look)

@@ -1,16 +1,22 @@
 """What the rig's sheets say of where a stripe runs, and which of two lasers a ridge belongs to."""
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import scipy
 from jaxtyping import Float
 
 from .._kernels.ridges import pool_along
+from ..errors import InputError
 from ..optics import back_project, equivalent_plane, intersect_rays_with_sheet, refractive_index
 from ..types.arrays import Scalars
+from ..types.background import Background
+from ..types.frame import Frame
 from ..types.rig import Rig
 from .ridges import Ridges
+from .scan_lines import ScanLines
 
 _GRID = 8
 """Full-frame pixels from one to the next of those at which sheets are compared."""
@@ -29,6 +35,32 @@ _NOWHERE = 1e9
 
 Table = Float[np.ndarray, "rows columns"]
 Probability = Float[np.ndarray, "lines most"]
+
+
+def look_along(
+    frames: Iterable[Frame], rig: Rig, background: Background, laser: int
+) -> Iterator[ScanLines]:
+    """Look at frames along a laser's scan lines, without what is fixed to the picture.
+
+    Args:
+        frames: The frames.
+        rig: The rig that recorded them.
+        background: What `Murk` has learnt of the recording.
+        laser: Number of the laser.
+
+    Raises:
+        InputError: Another extractor has learnt it.
+    """
+    if background.levels is None or not background.shapes:
+        raise InputError("Murk needs what it has learnt itself: give what its `learn` gave.")
+    look = partial(
+        ScanLines.of,
+        axis=rig.laser(laser).axis,
+        noise=background.levels,
+        fixed=background.fixed,
+        slope=expected_slope(rig, laser),
+    )
+    return map(look, frames)
 
 
 def expected_slope(rig: Rig, laser: int) -> float:

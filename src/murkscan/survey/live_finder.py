@@ -23,9 +23,10 @@ does."""
 _AGAIN, _FACTOR, _RARELY = 5.0, 3.0, 300.0
 """Recording time after which is learnt anew, by what factor that grows, and at most [s]: what is
 fixed to the picture and how murky the water is show better over a longer time."""
-STALE = 0.09
+STALE = 0.12
 """Age from which a frame of a stream is dropped while others wait [s]: of a quarter of a second the
-frames that `Murk` looks ahead take 0.14 s, and the finding itself a field's time."""
+five fields that `Murk` looks ahead for a preview take 0.1 s, and the finding itself a field's time.
+"""
 _WAIT = 0.25
 _WAITING = 16
 """Frames that wait at most, whatever their age."""
@@ -139,7 +140,7 @@ class LiveFinder:
         return self.background
 
     def _find(self, background: Background) -> None:
-        given = self._extractor.extract(
+        given = self._extractor.extract_soon(
             self._feed(background), self._rig, background, laser=self._laser
         )
         for stripe in given:
