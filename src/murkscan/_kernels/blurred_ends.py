@@ -18,11 +18,16 @@ def find_blurred_ends(
     A stripe follows `slope` px a line. Ridges below `least` are not looked at.
     """
     faint = np.zeros(positions.shape, np.int8)
+    most = np.empty(tails.shape[1])
+    for far in range(len(most)):
+        most[far] = tails[0, far]
+        for shape in range(1, len(tails)):
+            most[far] = max(most[far], tails[shape, far])
     for u in range(len(counts)):
         for k in range(counts[u]):
             if heights[u, k] > least:
                 faint[u, k] = _end_beside(
-                    u, k, positions, heights, counts, shapes, tails, slope, margin
+                    u, k, positions, heights, counts, shapes, tails, most, slope, margin
                 )
     is_blur = np.zeros(positions.shape, np.bool_)
     for u in range(len(counts)):
@@ -35,30 +40,48 @@ def find_blurred_ends(
 @part()
 def _end_beside(
     u: int, k: int, positions: np.ndarray, heights: np.ndarray, counts: np.ndarray,
-    shapes: np.ndarray, tails: np.ndarray, slope: float, margin: float,
+    shapes: np.ndarray, tails: np.ndarray, most: np.ndarray, slope: float, margin: float,
 ) -> int:  # fmt: skip
     """Give the direction (-1 or 1) in which a stripe has ended whose blur a ridge can be, or 0."""
     place, away, best = positions[u, k], 0, (heights[u, k] - 1.0) / margin
     for way in (-1, 1):
         for far in range(1, tails.shape[1] + 1):
-            most = heights[min(max(u - way * (far + 1), 0), len(counts) - 1), 0]
-            if most * tails[0, far - 1] * 2.0 < best:
+            least = best / most[far - 1]
+            if not _two_of_three(positions, heights, counts, u, -way, far, place, slope, least):
                 continue
-            inner = np.zeros(3)
-            shape = 0
+            first, second, third, shape = 0.0, 0.0, 0.0, 0
             for i in range(3):
                 line = u - way * (far + i)
                 near = 1.5 + abs(slope) * (far + i)
                 found = _highest_near(positions, heights, counts, line, place, near)
                 if found < 0:
                     break
-                inner[i] = heights[line, found]
+                first, second, third = heights[line, found], first, second
                 shape = max(shapes[line, found], 0)
-            low, high = min(inner[0], inner[1]), max(inner[0], inner[1])
-            blur = max(low, min(high, inner[2])) * tails[shape, far - 1]  # the middle one
+            low, high = min(first, second), max(first, second)
+            blur = max(low, min(high, third)) * tails[shape, far - 1]  # the middle one
             if blur > best:
                 best, away = blur, way
     return away
+
+
+@part()
+def _two_of_three(
+    positions: np.ndarray, heights: np.ndarray, counts: np.ndarray, u: int, way: int, far: int,
+    place: float, slope: float, least: float,
+) -> bool:  # fmt: skip
+    """Tell whether two of the lines `far` and on away have a ridge of `least` near a place."""
+    found = 0
+    for i in range(3):
+        line, near = u + way * (far + i), 1.5 + abs(slope) * (far + i)
+        if 0 <= line < len(counts):
+            for j in range(counts[line]):
+                if heights[line, j] < least:
+                    break
+                if abs(positions[line, j] - place) < near:
+                    found += 1
+                    break
+    return found >= 2
 
 
 @part()
