@@ -6,6 +6,7 @@ from ..types.arrays import Indices, Scalars
 from ..types.frame import Frame
 from ..types.laser import Axis
 from ..types.stripe import Stripe
+from .centres import Centres
 
 _APART = 1.0
 """Centres of one scan line that are closer than this are one centre, found twice [px]."""
@@ -70,6 +71,24 @@ def assemble_stripe(
         if blur_shift is None
         else (blur_shift[order] * stretch).astype(np.float32),
         width=np.zeros(n, np.float32) if width is None else width[order].astype(np.float32),
+    )
+
+
+def assemble_centres(centres: Centres, laser: int) -> Stripe:
+    """Make the stripe of one frame's centres."""
+    lines = centres.lines
+    stretch = lines.frame.row_step if lines.axis == "y" else 1
+    return assemble_stripe(
+        lines.frame,
+        lines.axis,
+        laser,
+        lines=centres.scan_line,
+        centres=lines.from_full_frame(centres.position),
+        sigma=centres.sigma / stretch,
+        signal=centres.signal,
+        posterior=centres.posterior,
+        blur_shift=centres.blur_shift / stretch,
+        width=centres.width,
     )
 
 

@@ -179,11 +179,11 @@ def _measure_white(
     middle, sigma, rise, _ = measure_at(lines, line, ridges.positions[line, which], noise).T
     whole = np.isfinite(middle)
     full, spread = lines.as_full_frame(middle), lines.stretch * sigma
-    held, usual = posterior[line, which], _learnt(lines, len(line), None)
+    held, usual = posterior[line, which], learnt_of(lines, len(line), None)
     return Centres(lines, line, full, spread, rise, held, *usual)[whole]
 
 
-def _learnt(lines: ScanLines, count: int, shape: StripeShape | None) -> tuple[Scalars, ...]:
+def learnt_of(lines: ScanLines, count: int, shape: StripeShape | None) -> tuple[Scalars, ...]:
     """List what is learnt of centres: see the last columns of `Centres`, from `common` on.
 
     Nothing errs alike yet, and nothing has been put back.
@@ -211,7 +211,7 @@ def _fit_one_width(
     spread = seen.stretch * np.hypot(shape.misfit * sigma, shape.floor)
     full = seen.as_full_frame(position)
     signal = np.clip(height * (1 + skirt), 0.0, noise.white)
-    held, learnt = posterior[line, which], _learnt(seen, len(line), shape)
+    held, learnt = posterior[line, which], learnt_of(seen, len(line), shape)
     centres = Centres(ridges.lines, line, full, spread, signal, held, *learnt)[fits]
     width = seen.stretch * shape.width
     return _without_blur(centres, width=width, blur=shape.blur)

@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import starmap
 from typing import ClassVar, TypeVar, final
 
 import numpy as np
@@ -18,7 +19,7 @@ from ..types.background import Background, FixedPattern, Noise, Search, StripeSh
 from ..types.frame import Frame
 from ..types.rig import Rig
 from ..types.stripe import Stripe
-from .assemble import assemble_stripe
+from .assemble import assemble_centres
 from .at_once import map_at_once
 from .attenuation import estimate_attenuation, nearer_side
 from .base import AbstractExtractor
@@ -31,6 +32,7 @@ from .matched_filter import FilterBank
 from .neighbours import with_neighbours
 from .noise import learn_levels, learn_noise
 from .remarks import find_remarks
+from .ridge_centres import take_ridges
 from .ridges import Ridges, find_frame_ridges
 from .rim import add_rim
 from .row_noise import learn_row_noise
@@ -150,35 +152,33 @@ class Murk(AbstractExtractor):
     def extract_soon(
         self, frames: Iterable[Frame], rig: Rig, background: Background, *, laser: int = 0
     ) -> Iterator[Stripe]:
-        """Find the same centres, each by its own frame; see `AbstractExtractor.extract_soon`."""
-        look = look_along(frames, rig, background, laser)
-        return self._give(self._centres(look, background, OtherLasers.of(rig, laser)), laser)
+        """Find the same ridges, without a fit to each; see `AbstractExtractor.extract_soon`."""
+        seen = look_along(frames, rig, background, laser)
+        found = self._follow(seen, background, OtherLasers.of(rig, laser))
+        return self._give(_measure(found, take_ridges, background), laser)
 
     def _find(
-        self, look: Iterable[ScanLines], background: Background, others: OtherLasers, laser: int
+        self, seen: Iterable[ScanLines], background: Background, others: OtherLasers, laser: int
     ) -> Iterator[Stripe]:
-        centres = self._centres(look, background, others)
-        assert background.levels is not None  # checked by `look_along`
-        near = with_neighbours(centres, 2)
-        return self._give((join_frames(one, noise=background.levels) for one in near), laser)
+        found = self._follow(seen, background, others)
+        near = with_neighbours(_measure(found, find_centres, background), 2)
+        return self._give((join_frames(one, noise=_law(background)) for one in near), laser)
 
     def _give(self, centres: Iterable[Centres], laser: int) -> Iterator[Stripe]:
         for one in map(doubt_wide, centres):
-            yield _as_stripe(one[one.posterior >= self.min_posterior], laser)
+            yield assemble_centres(one[one.posterior >= self.min_posterior], laser)
 
-    def _centres(
-        self, look: Iterable[ScanLines], background: Background, others: OtherLasers
-    ) -> Iterator[Centres]:
-        noise, shapes = background.levels, background.shapes
-        assert noise is not None  # by `look_along`
+    def _follow(
+        self, seen: Iterable[ScanLines], background: Background, others: OtherLasers
+    ) -> Iterator[tuple[Ridges, Posterior]]:
+        """Give each frame's ridges, and how probably each is the stripe."""
         markov = self._markov(background.rates, background.stays)
-        bank = FilterBank.of(shapes, noise, background.search)
-        scored = (bank.score(lines) for lines in look)
+        bank = FilterBank.of(background.shapes, _law(background), background.search)
+        scored = (bank.score(lines) for lines in seen)
         ridges = (find_frame_ridges(near, bank) for near in with_neighbours(scored, 1))
         for near in with_neighbours(ridges, 4):
             own = others.tell(near[0])
-            posterior = own * markov.follow(near[0], ask_frames(near, markov) + np.log(own))
-            yield find_centres(near[0], posterior, noise=noise, shapes=shapes)
+            yield near[0], own * markov.follow(near[0], ask_frames(near, markov) + np.log(own))
 
     @property
     def _plain(self) -> Search:
@@ -268,6 +268,18 @@ class _Learnt:
         return float(np.median(self.heights)) if len(self.heights) else math.nan
 
 
+def _law(background: Background) -> Noise:
+    assert background.levels is not None  # by `look_along`
+    return background.levels
+
+
+def _measure(
+    found: Iterable[tuple[Ridges, Posterior]], how: Callable[..., Centres], background: Background
+) -> Iterator[Centres]:
+    """Give the centres of each frame's ridges."""
+    return starmap(partial(how, noise=_law(background), shapes=background.shapes), found)
+
+
 def _follow_each(ridges: Ridges, markov: Markov, lasers: Sequence[OtherLasers]) -> list[Posterior]:
     """Give the posterior of each ridge being the stripe of each laser."""
     return [markov.follow(ridges, np.log(laser.tell(ridges))) for laser in lasers]
@@ -282,20 +294,3 @@ def _thin(items: Sequence[Item]) -> Sequence[Item]:
     """Take some of the frames that were given, both kinds of fields among them."""
     step = max(len(items) // _FEW, 1)
     return [item for number, item in enumerate(items) if number // 2 % step == 0]
-
-
-def _as_stripe(centres: Centres, laser: int) -> Stripe:
-    lines = centres.lines
-    stretch = lines.frame.row_step if lines.axis == "y" else 1
-    return assemble_stripe(
-        lines.frame,
-        lines.axis,
-        laser,
-        lines=centres.scan_line,
-        centres=lines.from_full_frame(centres.position),
-        sigma=centres.sigma / stretch,
-        signal=centres.signal,
-        posterior=centres.posterior,
-        blur_shift=centres.blur_shift / stretch,
-        width=centres.width,
-    )

@@ -283,8 +283,8 @@ def _find_one_width(
     scores = near[0].scores[number]
     if len(near) > 1:
         sides = [near.get(-1, near[0]), near.get(1, near[0])]
-        back = [_half_rows(near[0].lines, side.lines, matched.binning) for side in sides]
-        back = np.column_stack([[-1 in near, 1 in near], back])
+        rows = [_half_rows(near[0].lines, side.lines, matched.binning) for side in sides]
+        back = np.column_stack([[-1 in near, 1 in near], rows])
         before, after = (side.scores[number] for side in sides)
         scores = add_neighbours(scores, before, after, back, _BOUND, _HALF_ROW)
     least, most = bank.search.least, bank.search.most
