@@ -28,7 +28,8 @@ class Processes(AbstractExecutor):
     workers: int | None = None
     """How many; as many as there are cores unless said."""
     niceness: int = 0
-    """How much they give way to others, 0 to 19; only where the system knows it."""
+    """How much they give way to others, 0 to 19; only where the system knows it. On Linux the
+    thread that asks them gives way as well."""
 
     shares_memory: ClassVar[bool] = False
 
@@ -39,6 +40,9 @@ class Processes(AbstractExecutor):
     def map(self, task: Callable[[T], R], items: Iterable[T]) -> Generator[R, None, None]:
         """Run a task for each item; see `AbstractExecutor.map`."""
         workers = self.workers or os.cpu_count() or 1
+        if self.niceness:
+            # A process begins as the thread that starts it, and imports for seconds.
+            _give_way(self.niceness)
         source, waiting, deaths = iter(items), list[T](), count(1)
         while True:
             # A forked process would inherit locks of threads that it has not.
@@ -60,7 +64,7 @@ class Processes(AbstractExecutor):
 
 
 def _give_way(niceness: int) -> None:
-    """Make the process that calls give way to others, before it imports what its tasks need."""
+    """Make the process that calls give way to others; on Linux the thread, and what it starts."""
     with suppress(OSError, AttributeError):
         os.nice(niceness)
 

@@ -3,7 +3,7 @@
 import threading
 import time
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ..capture import ArrivedFrame
@@ -203,6 +203,16 @@ class LiveFinder:
                 # Nothing is found yet that the first learning could hold up, and a process takes
                 # longer to start than it takes to learn.
                 learner = Serial() if self.background is None else self._learner
-                self.background = next(learner.map(task, [self._spread.frames()]))
+                frames = self._spread.frames()
+                learnt = next(learner.map(task, [frames]))
+                if self.background is None:
+                    self._practise(frames, learnt)
+                self.background = learnt
         except Exception as error:  # whatever it is, the recording goes on
             self.failure = f"The preview has ended ({error}); the recording goes on."
+
+    def _practise(self, frames: Sequence[Frame], background: Background) -> None:
+        """Find in frames that are known, for nothing: loops take a second on their first use."""
+        found = self._extractor.extract_soon(frames, self._rig, background, laser=self._laser)
+        for stripe in found:
+            triangulate(stripe, self._rig, self._method)
