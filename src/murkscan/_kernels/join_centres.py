@@ -60,18 +60,9 @@ def join_centres(
             i, lines, times, centres, noise, roots, common, drawn, starts, reach, rough[i], near
         )
         off, joined[i - first, 1] = _join_one(
-            near,
-            count,
-            sigma[i] ** 2,
-            drawn[i] ** 2,
-            noise[i],
-            length,
-            alone,
-            same,
-            seen,
-            sums,
+            near, count, sigma[i] ** 2, drawn[i] ** 2, noise[i], length, alone, same, seen, sums,
             bells,
-        )
+        )  # fmt: skip
         joined[i - first, 0] = centres[i] + off
     return joined
 
