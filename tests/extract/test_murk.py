@@ -321,6 +321,24 @@ def test_a_stripe_that_no_scan_line_shows_is_found_by_many_together():
     assert murk.learn(bright, RIG).search.least == murk.min_score
 
 
+@pytest.mark.parametrize("peak", [15.0, 60.0, 180.0])
+def test_a_previews_centres_are_right_within_what_it_states(peak):
+    """And the same as the scan's, whose height they have."""
+    frames = _film([10.0 + _light(_hull(i), peak) for i in range(12)])
+    murk = Murk()
+    background = murk.learn_soon(frames, RIG)
+    soon = murk.extract_soon(frames, RIG, background)
+    shares = []
+    for i, (found, exact) in enumerate(
+        zip(soon, murk.extract(frames, RIG, background), strict=True)
+    ):
+        lines = found.pixels[:, 0].astype(int)
+        assert len(np.setxor1d(lines, exact.pixels[:, 0])) < 0.03 * LENGTH
+        shares.append(np.mean(np.abs(found.pixels[:, 1] - _hull(i)[lines]) < found.sigma))
+        assert 0.8 < np.median(found.signal) / np.median(exact.signal) < 1.2
+    assert 0.5 < np.mean(shares) < 0.95
+
+
 def test_short_faint_remnants_in_all_of_a_recording_are_no_stripe():
     """Twelve smears of 12 lines a frame, at places of their own, three times the noise."""
     rng = np.random.default_rng(3)

@@ -28,8 +28,7 @@ class Processes(AbstractExecutor):
     workers: int | None = None
     """How many; as many as there are cores unless said."""
     niceness: int = 0
-    """How much they give way to others, 0 to 19; only where the system knows it. On Linux the
-    thread that asks them gives way as well."""
+    """How much they give way to others, 0 to 19; only where the system knows it."""
 
     shares_memory: ClassVar[bool] = False
 
@@ -40,15 +39,12 @@ class Processes(AbstractExecutor):
     def map(self, task: Callable[[T], R], items: Iterable[T]) -> Generator[R, None, None]:
         """Run a task for each item; see `AbstractExecutor.map`."""
         workers = self.workers or os.cpu_count() or 1
-        if self.niceness:
-            # A process begins as the thread that starts it, and imports for seconds.
-            _give_way(self.niceness)
         source, waiting, deaths = iter(items), list[T](), count(1)
         while True:
             # A forked process would inherit locks of threads that it has not.
             context = multiprocessing.get_context("spawn")
             with ProcessPoolExecutor(
-                workers, context, initializer=_give_way, initargs=(self.niceness,)
+                workers, context, initializer=give_way, initargs=(self.niceness,)
             ) as pool:
                 try:
                     yield from _work(pool, task, source, waiting, workers + 1)
@@ -63,8 +59,12 @@ class Processes(AbstractExecutor):
                     pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _give_way(niceness: int) -> None:
-    """Make the process that calls give way to others; on Linux the thread, and what it starts."""
+def give_way(niceness: int) -> None:
+    """Make the process that calls give way to others; on Linux the thread, and what it starts.
+
+    Args:
+        niceness: By how much more than so far, to 19 at most.
+    """
     with suppress(OSError, AttributeError):
         os.nice(niceness)
 

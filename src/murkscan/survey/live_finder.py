@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ..capture import ArrivedFrame
-from ..distribute import AbstractExecutor, Serial
+from ..distribute import AbstractExecutor, Serial, give_way
 from ..extract import AbstractExtractor
 from ..live import Look, Mailbox, PictureWatch, SpreadFrames
 from ..triangulate import AbstractTriangulation, triangulate
@@ -27,6 +27,8 @@ STALE = 0.12
 """Age from which a frame of a stream is dropped while others wait [s]: of a quarter of a second the
 five fields that `Murk` looks ahead for a preview take 0.1 s, and the finding itself a field's time.
 """
+_NICE = 19
+"""How much the learning gives way to the finding: as much as there is."""
 _WAIT = 0.25
 _WAITING = 16
 """Frames that wait at most, whatever their age."""
@@ -207,6 +209,8 @@ class LiveFinder:
                 learnt = next(learner.map(task, [frames]))
                 if self.background is None:
                     self._practise(frames, learnt)
+                    # A process begins as the thread that starts it, and imports for seconds.
+                    give_way(_NICE)
                 self.background = learnt
         except Exception as error:  # whatever it is, the recording goes on
             self.failure = f"The preview has ended ({error}); the recording goes on."
