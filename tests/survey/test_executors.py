@@ -1,6 +1,7 @@
 """Whoever does the work, it is the same to the byte."""
 
 import filecmp
+import shutil
 
 import numpy as np
 import pytest
@@ -14,6 +15,8 @@ from murkscan.survey.cloud import build_cloud
 from murkscan.survey.export import export_cloud
 from murkscan.survey.extract import extract_recording
 from murkscan.survey.mesh import build_mesh
+from murkscan.survey.motion import follow_motion
+from murkscan.survey.sample import load_sample
 from murkscan.survey.scan import begin_scan
 from murkscan.survey.triangulate import triangulate_stripes
 from murkscan.triangulate import undo_paint_pull
@@ -101,6 +104,16 @@ def test_paint_is_taken_back_across_borders_of_parts(recorded, serial):
     whole = undo_paint_pull(found, pulls, rig)
     assert not np.array_equal(whole.pixels, found.pixels)
     np.testing.assert_array_equal(project.load_profile().pixels, whole.pixels)
+
+
+def test_measures_know_that_paint_was_taken_back(recorded, serial, tmp_path):
+    project = ms.Project(shutil.copytree(serial, tmp_path / "out"))
+    follow_motion(project, ms.ConstantSpeed(0.1, "y"))
+    build_cloud(project, ms.load_rig(recorded / "rig.toml"))
+    sight = load_sample(project).sight
+    assert sight is not None
+    assert sight.pulled_back is not None
+    assert sight.pulled_back.all()
 
 
 @pytest.mark.parametrize(

@@ -68,6 +68,9 @@ class Sight:
     widths: Scalars | None = None
     """1σ of the stripe at each point, as wide as it looks [m]; None where nobody knows, 0 where no
     finder has learnt it."""
+    pulled_back: Mask | None = None
+    """Whether each was put back to where it would be if what the sheet lights were alike bright
+    across it; see `triangulate.undo_paint_pull`. None where none was."""
 
     def __getitem__(self, which: Mask) -> "Sight":
         """Pick some of the points."""
@@ -76,7 +79,13 @@ class Sight:
             self.along[which],
             *(
                 None if column is None else column[which]
-                for column in (self.light, self.ranges, self.blur_shift, self.widths)
+                for column in (
+                    self.light,
+                    self.ranges,
+                    self.blur_shift,
+                    self.widths,
+                    self.pulled_back,
+                )
             ),
         )
 
@@ -254,6 +263,9 @@ def _thickness_slopes(stripe: _Stripe) -> Scalars:
     brighter = stripe.bend(step, sight.light) / _away_from_zero(_dot(normals, sight.light))
     if sight.ranges is not None:
         brighter = brighter - (4 / sight.ranges + _LOST) * _dot(step, sight.rays)
+    if sight.pulled_back is not None:
+        # It grows brighter over frames by paint and by shade: both were taken back.
+        brighter = np.where(sight.pulled_back, 0.0, brighter)
     apart = _away_from_zero(_dot(across, sheet))
     centre = 1.5 * turn * apart + _dot(across, step) * brighter
     return _dot(normals, sheet) * centre / apart

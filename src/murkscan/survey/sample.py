@@ -1,12 +1,14 @@
 """The points of a scan as measures want them: seen from where, and moved by what."""
 
+from dataclasses import replace
+
 import numpy as np
 from jaxtyping import Float
 
 from ..errors import NotEnoughData
 from ..measure import Sample, Selection
 from ..optics.seen_points import look_back, shifts_in_world
-from ..project import CLOUD, Project, is_merged, load_moving_rig
+from ..project import CLOUD, TRIANGULATE, Project, is_merged, load_moving_rig
 from ..project.merged import load_merged_errors
 from ..types.arrays import Indices, Vector
 from ..types.cloud import PointCloud
@@ -49,9 +51,12 @@ def _know_scan(project: Project, cloud: PointCloud) -> Sample:
     def shifts(some: Indices) -> Float[np.ndarray, "n 3 modes"]:
         return shifts_in_world(profile[some], trajectory, rig)
 
+    pulls = project.finished(TRIANGULATE).result.paint_pulls
+    pulled_back = np.isin(cloud.laser, [pull.laser for pull in pulls]) if pulls else None
+    sight = look_back(cloud, profile.time, trajectory, rig)
     return Sample.from_cloud(
         cloud,
-        sight=look_back(cloud, profile.time, trajectory, rig),
+        sight=replace(sight, pulled_back=pulled_back),
         shifts=shifts if rig.covariance.names or trajectory.errors is not None else None,
     )
 
