@@ -17,6 +17,7 @@ from harness import Figure, tell
 from studio_streams import SDP
 
 from murkscan.capture.field_order import Fields
+from murkscan.cli.memory import share_freed_memory
 from murkscan.extract import AbstractExtractor, GrayGravity, Murk
 from murkscan.io.rig_toml import load_rig
 from murkscan.live import GapMap, LiveFolder, LiveStatus
@@ -193,6 +194,7 @@ def _settings(
 
 def _stream(case: Case, made: Path, out: Path, seconds: float) -> list[Figure]:
     """Stream for so long after the first profile, and say how the preview kept up."""
+    share_freed_memory()  # as the command does
     rig, told = load_rig(made / "rig.toml"), list[LiveStatus]()
     sdp = out.with_suffix(".sdp")
     sdp.write_text(SDP.format(port=case.port))

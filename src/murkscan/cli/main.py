@@ -11,6 +11,7 @@ from cyclopts import App, CoercionError, CycloptsError, MissingArgumentError
 
 from ..errors import MurkscanError
 from .help import Formatter
+from .memory import share_freed_memory
 from .typed import WORDS
 from .words import wrap
 
@@ -73,6 +74,7 @@ def main() -> None:
         # Stages and workers fill the cores; products of small matrices only wait for one another
         # there: looking for fields took four times as long, a whole scan a sixth longer.
         os.environ.setdefault(name, "1")
+    share_freed_memory()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # names of files may be no text
