@@ -4,7 +4,6 @@ import numpy as np
 
 from .cholesky import first_variance, solve, substitute
 from .compiled import loop, part
-from .slopes_around import first_from, measure_slopes
 
 _SIZE = 5
 """Parameters: centre, its slope over lines, its speed over frames, its curvature over both."""
@@ -18,11 +17,6 @@ _TOLD = 2.0
 """Times that a square exceeds its own variance, to tell anything; what is more is shrunk by it."""
 _ONE_WAY = 3.0
 """Scan lines that are drawn one way by what darkens the stripe unevenly."""
-
-_SLANT, _BEND = 0.3, 0.2
-"""By how much surfaces usually slant from what is measured beforehand [px a line or a frame], and
-bend [px per line² and per frame²]: a ball of 40 mm, 0.9 m before a PAL rig, bends by .005 to .08 a
-frame² at 1 to 4 mm a frame, and at 60 degrees eight times as much. Tighter ones draw it inwards."""
 
 _SUMS = 6
 _TOTAL, _SQUARES, _PULL = 0, 1, 2
@@ -143,11 +137,11 @@ def _normal_equations(
         aat, att, aatt = aat + waa * t, att + wa * tt, aatt + waa * tt
         y, ay, ty, aay, tty = y + wy, ay + wy * a, ty + wy * t, aay + wy * aa, tty + wy * tt
     right[0], right[1], right[2], right[3], right[4] = y, ay, ty, aay, tty
-    matrix[0, 0], matrix[1, 0], matrix[1, 1] = n, a1, a2 + 1.0 / _SLANT**2
-    matrix[2, 0], matrix[2, 1], matrix[2, 2] = t1, at, t2 + 1.0 / _SLANT**2
-    matrix[3, 0], matrix[3, 1], matrix[3, 2], matrix[3, 3] = a2, a3, aat, a4 + 1.0 / _BEND**2
+    matrix[0, 0], matrix[1, 0], matrix[1, 1] = n, a1, a2 + 1.0 / 0.3**2
+    matrix[2, 0], matrix[2, 1], matrix[2, 2] = t1, at, t2 + 1.0 / 0.3**2
+    matrix[3, 0], matrix[3, 1], matrix[3, 2], matrix[3, 3] = a2, a3, aat, a4 + 1.0 / 0.02**2
     matrix[4, 0], matrix[4, 1], matrix[4, 2], matrix[4, 3] = t2, att, t3, aatt
-    matrix[4, 4] = t4 + 1.0 / _BEND**2
+    matrix[4, 4] = t4 + 1.0 / 0.03**2
     return misfits / max(weights, 1.0)
 
 
@@ -267,21 +261,19 @@ def _gather(
 ) -> int:  # fmt: skip
     """List what may be the same surface, and give how many there are.
 
-    Each has its distance in lines and in frames, the difference of centres beside how the surface
-    slants there (a steep one's neighbours would count on one side only), its variance, its share of
-    the misfit, what the surface's roughness adds, what it errs by as others do: all, and those of
-    its scan line, and the root of its variance.
+    Each has its distance in lines and in frames, the difference of centres, its variance, its share
+    of the misfit, what the surface's roughness adds, what it errs by as others do: all, and those
+    of its scan line, and the root of its variance.
     """
     count = 0
-    lean, drift = measure_slopes(i, lines, times, centres, starts)
     for f in range(len(starts) - 1):
-        low = first_from(lines, starts[f], starts[f + 1], lines[i] - reach)
+        low = _first_from(lines, starts[f], starts[f + 1], lines[i] - reach)
         for j in range(low, starts[f + 1]):
             along = lines[j] - lines[i]
             if along > reach or count == near.shape[1]:
                 break
             later = times[j] - times[i]
-            off = centres[j] - centres[i] - lean * along - drift * later
+            off = centres[j] - centres[i]
             beyond = abs(off) - 0.3 * abs(along) - 0.4 * abs(later)
             if beyond > 0.0 and beyond * beyond >= 9.0 * (noise[j] + noise[i]):
                 continue
@@ -295,3 +287,15 @@ def _gather(
             near[8, count] = roots[j]
             count += 1
     return count
+
+
+@part()
+def _first_from(lines: np.ndarray, low: int, high: int, least: float) -> int:
+    """Find the first of the sorted lines low … high - 1 that is at least so large; else high."""
+    while low < high:
+        middle = (low + high) // 2
+        if lines[middle] < least:
+            low = middle + 1
+        else:
+            high = middle
+    return low
