@@ -109,7 +109,7 @@ def usual_rates() -> Rates:
 
 
 def learn_rates(
-    ridges: Sequence[Ridges], posteriors: Sequence[Sequence[Float[np.ndarray, "_ most"]]]
+    ridges: Sequence[Ridges], posteriors: Sequence[Sequence[Float[np.ndarray, "_ _"]]]
 ) -> Rates:
     """Count the ridges that are no stripe, by height [1/px and e-fold].
 
@@ -140,7 +140,7 @@ def learn_rates(
 
 
 def learn_stays(
-    ridges: Sequence[Ridges], posteriors: Sequence[Sequence[Float[np.ndarray, "_ most"]]]
+    ridges: Sequence[Ridges], posteriors: Sequence[Sequence[Float[np.ndarray, "_ _"]]]
 ) -> Stays:
     """Measure which share of the clutter of each height other frames show in its place, too.
 
@@ -167,8 +167,8 @@ def learn_stays(
 
 
 def _followed(
-    ridges: Sequence[Ridges], posteriors: Sequence[Sequence[Float[np.ndarray, "_ most"]]]
-) -> Iterator[tuple[Ridges, Sequence[Float[np.ndarray, "_ most"]], Ridges]]:
+    ridges: Sequence[Ridges], posteriors: Sequence[Sequence[Float[np.ndarray, "_ _"]]]
+) -> Iterator[tuple[Ridges, Sequence[Float[np.ndarray, "_ _"]], Ridges]]:
     """Give each frame with its posteriors and the next one that has the same rows."""
     for number, (one, lasers) in enumerate(zip(ridges, posteriors, strict=True)):
         row = one.lines.frame.first_row
@@ -178,7 +178,7 @@ def _followed(
                 break
 
 
-def _are_clutter(ridges: Ridges, lasers: Sequence[Float[np.ndarray, "_ most"]]) -> Marks:
+def _are_clutter(ridges: Ridges, lasers: Sequence[Float[np.ndarray, "_ _"]]) -> Marks:
     """Tell which ridges are neither a long stripe nor near one."""
     stripe = np.any([ridges.are_long(posterior > 0.5) for posterior in lasers], axis=0)
     return ridges.exist & ~stripe & ~ridges.are_within(stripe, ridges.reach)
