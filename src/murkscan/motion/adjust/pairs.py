@@ -25,10 +25,9 @@ _GOLDEN = (5**0.5 - 1) / 2
 _SLOWEST = 0.01
 """Speed of a line over the surface below which it is not known where it was when [m/s]."""
 _TOGETHER = 9
-"""Facets whose planes share their points, three by three cells: their ties err together by their
-slopes, and all of them tell of the way along the surface what one tells. Where ties counted as so
-many that are free, their noise would bend a way that its log leaves open, by far more than stated
-(without an instrument by up to 14 mm across the surface, of 3 that were stated)."""
+"""Facets whose planes share their points, three by three cells: they slant wrongly together, and
+all of them tell of a place beside them what one tells. Counted as so many that are free, their
+slopes' noise would bend a way that its log leaves open."""
 _STEEP = 0.3
 """Cosine of the angle between a sheet and a surface's normal below which it only grazes it."""
 
@@ -194,7 +193,7 @@ def _tie(
     kept = (length > 2 * _AGREE) & (np.abs(off) < reach) & (lateral < _BEYOND * size)
     kept &= _are_inner(one)[first] & _are_inner(two)[second]
     first, second, aside, match = first[kept], second[kept], aside[kept], match[kept]
-    variance = _TOGETHER * (_variance(one, first, aside) + _variance(two, second, aside))
+    variance = _variance(one, first, aside) + _variance(two, second, aside)
     variance = variance + np.where(match, 0.0, a.relief + b.relief)
     count = len(first)
     times, own = b.at_places(second, aside)
@@ -243,4 +242,4 @@ def _variance(facets: Facets, which: Indices, aside: Directions) -> Scalars:
     """Give what one facet adds to a tie's variance: of its middle, and of its slope far from it."""
     along = np.einsum("ni,nki->nk", aside, facets.axes[which])
     slope = np.einsum("nk,nk->n", along**2, facets.slope_variance[which]) / 4
-    return facets.variance[which] * (1 / facets.count[which] + slope)
+    return facets.variance[which] * (1 / facets.count[which] + _TOGETHER * slope)

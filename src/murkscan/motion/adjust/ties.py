@@ -38,7 +38,7 @@ class Ties:
     offset: Scalars
     """What the difference should be [m]."""
     variance: Scalars
-    """Of the difference [m²], times how many ties err together: its inverse is what one adds."""
+    """Of the difference [m²]."""
 
     def __len__(self) -> int:
         """Count the ties."""
