@@ -3,6 +3,7 @@
 import numpy as np
 from jaxtyping import Float
 
+from ..types.arrays import Mask
 from .ridges import Marks, Ridges
 
 _STEP = 3.0
@@ -33,18 +34,20 @@ def go_on_beside(ridges: Ridges, first: Weights, second: Weights) -> Marks:
     """
     marks = np.zeros(ridges.positions.shape, bool)
     line, which = np.nonzero(second > 0.5)
+    if len(line) == 0:
+        return marks
     taken = np.nonzero(first > 0.5)
     places = np.stack([taken[0], ridges.straight[taken]], axis=1)
     beside = np.stack([line, ridges.straight[line, which]], axis=1)
     off = np.abs(np.diff(beside, axis=0))
     cuts = np.flatnonzero((off[:, 0] > _GAP) | (off[:, 1] > _STEP)) + 1
-    for run in np.split(np.arange(len(line)), cuts):
-        if len(run) and _meet(beside[run[[0, -1]]], places):
-            marks[line[run], which[run]] = True
+    starts, ends = np.append(0, cuts), np.append(cuts, len(line))
+    met = _meet(beside[starts], places) | _meet(beside[ends - 1], places)
+    marks[line, which] = np.repeat(met, ends - starts)
     return marks
 
 
-def _meet(ends: Float[np.ndarray, "2 2"], others: Places) -> bool:
-    """Tell whether the first chain has been, or will be, where a branch ends."""
+def _meet(ends: Places, others: Places) -> Mask:
+    """Tell at which ends of branches the first chain has been, or will be."""
     gap, off = np.moveaxis(np.abs(ends[:, None] - others), 2, 0)
-    return bool(np.any((gap <= _GAP) & (off < _BEND[0] + _BEND[1] * gap)))
+    return ((gap <= _GAP) & (off < _BEND[0] + _BEND[1] * gap)).any(axis=1)
