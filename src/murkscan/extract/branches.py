@@ -15,7 +15,7 @@ _BEND = (1.5, 0.75)
 
 Weights = Float[np.ndarray, "lines most"]
 """One number a ridge."""
-Places = Float[np.ndarray, "n 2"]
+Places = Float[np.ndarray, "_ 2"]
 """Scan line and position, one a row."""
 
 
