@@ -9,7 +9,7 @@ _SIZE = 5
 """Parameters: centre, its slope over lines, its speed over frames, its curvature over both."""
 _TURNS = 3
 _MOST, _COLUMNS = 512, 12
-"""Neighbours of a centre that are looked at, and what is known of each; the last is for sums."""
+"""Neighbours of a centre that are looked at, and what is known of each; three more are for sums."""
 _BESIDE, _ALL, _OWN = 2.0, 8.0, 0.7
 """1σ of the Gaussians by which scan lines count, where it is measured how far the surface is off:
 those around a centre, and its own [lines]."""
@@ -45,8 +45,7 @@ def join_centres(
     """
     joined = np.empty((last - first, 2))
     noise = sigma**2 + common**2 + drawn**2
-    roots = np.sqrt(noise)
-    near = np.empty((_COLUMNS, _MOST))
+    roots, near = np.sqrt(noise), np.empty((_COLUMNS, _MOST))
     sums = np.empty((_SUMS, 2 * int(reach) + 1))
     bells = _draw_bells(sums.shape[1])
     for i in range(first, last):
