@@ -146,8 +146,8 @@ class Murk(AbstractExtractor):
         self, frames: Iterable[Frame], rig: Rig, background: Background, *, laser: int = 0
     ) -> Iterator[Stripe]:
         """Find the stripe in each frame; see `AbstractExtractor.extract`."""
-        look = look_along(frames, rig, background, laser)
-        return self._find(look, background, OtherLasers.of(rig, laser), laser)
+        seen = look_along(frames, rig, background, laser)
+        return self._find(seen, background, OtherLasers.of(rig, laser), laser)
 
     def extract_soon(
         self, frames: Iterable[Frame], rig: Rig, background: Background, *, laser: int = 0
