@@ -54,19 +54,24 @@ def _trajectory(steps=None, axis="y", turn=None):
     return Trajectory(np.arange(FRAMES) * 0.04, turn.apply(positions), quaternions)
 
 
-def _cover(profiles, *, read=None, trajectory=None, axis="y", fields=1):
+def _layout(*, read=None, trajectory=None, axis="y", fields=1):
     read = np.arange(FRAMES) if read is None else read
     trajectory = trajectory or _trajectory(axis=axis)
-    layout = SwathLayout(
-        FrameTimes(read.astype(np.uint32), read * 0.04),
-        trajectory,
-        axis,
-        (LINES, LINES),
-        fields,
-        SurfaceDirections.from_trajectory(trajectory, axis),
-    )
+    frames = FrameTimes(read.astype(np.uint32), read * 0.04)
+    directions = SurfaceDirections.from_trajectory(trajectory, axis)
+    return SwathLayout(frames, trajectory, axis, (LINES, LINES), fields, directions)
+
+
+def _cover(profiles, **laid):
+    layout = _layout(**laid)
     profiles = profiles if isinstance(profiles, list) else [profiles]
     return map_coverage(profiles, {0: layout}, reach=BRIGHT, wanted=PITCH, spacing=STEP)
+
+
+def _grow(profile, layout, *, cell):
+    growing = GrowingCoverage(wanted=PITCH, cell=cell, most=10**9)
+    growing.add([profile], layout, BRIGHT)
+    return growing.as_map()
 
 
 def _only(coverage):
@@ -200,17 +205,26 @@ def test_the_map_shows_the_gap_where_it_is():
     assert place.max() == pytest.approx(0.120, abs=coverage.cell)
 
 
+def test_scan_lines_that_are_farther_apart_than_cells_leave_no_cell_between_them_unknown():
+    found = _grow(_scan(), _layout(), cell=0.4 * PITCH)
+    assert (found.state() == 0).all()
+
+
+def test_a_gap_in_which_the_vehicle_drifts_aside_leans_with_it():
+    trajectory = _trajectory()
+    trajectory.positions[:, 0] = np.clip(np.arange(FRAMES) - 80, 0, 40) * 0.5 * STEP
+    dive = _scan(lambda frame, line: (frame < 80) | (frame >= 120))
+    found = _grow(dive, _layout(trajectory=trajectory), cell=2 * PITCH)
+    is_gap = found.state() == 1 + CAUSES.index("no_stripe")
+    columns = np.flatnonzero(is_gap.any(axis=0))[:20]  # before its last profile, which slants
+    edge = is_gap[:, columns].argmax(axis=0)
+    # 20 mm aside over the gap's 41 mm, seen from the whole way, which goes 20 mm aside over 199.
+    lean = np.tan(np.arctan(20 / 41) - np.arctan(20 / 199))
+    assert np.polyfit(columns, edge, 1)[0] == pytest.approx(lean, abs=0.05)
+
+
 def test_a_map_that_grows_is_that_of_the_whole_scan():
-    profile, trajectory = _scan(lambda frame, line: (frame < 80) | (frame >= 120)), _trajectory()
-    read = np.arange(FRAMES)
-    layout = SwathLayout(
-        FrameTimes(read.astype(np.uint32), read * 0.04),
-        trajectory,
-        "y",
-        (LINES, LINES),
-        1,
-        SurfaceDirections.from_trajectory(trajectory, "y"),
-    )
+    profile, layout = _scan(lambda frame, line: (frame < 80) | (frame >= 120)), _layout()
     growing = GrowingCoverage(wanted=PITCH, cell=0.005, most=10**9)
     for first in range(0, FRAMES, 50):
         part = profile[(profile.frame >= first) & (profile.frame < first + 50)]
@@ -222,10 +236,7 @@ def test_a_map_that_grows_is_that_of_the_whole_scan():
 
 
 def test_a_map_goes_on_where_an_earlier_run_ended():
-    trajectory, read = _trajectory(), np.arange(FRAMES)
-    directions = SurfaceDirections.from_trajectory(trajectory, "y")
-    frames = FrameTimes(read.astype(np.uint32), read * 0.04)
-    layout = SwathLayout(frames, trajectory, "y", (LINES, LINES), 1, directions)
+    layout = _layout()
     profile = _scan()
     first, later = (GrowingCoverage(wanted=PITCH, cell=0.005, most=10**6) for _ in range(2))
     first.add([profile[profile.frame < 120]], layout, BRIGHT)
@@ -241,10 +252,7 @@ def test_a_map_goes_on_where_an_earlier_run_ended():
 
 def test_a_map_that_grows_too_large_is_coarsened_and_loses_no_area():
     fine, coarse = (GrowingCoverage(wanted=PITCH, cell=0.002, most=most) for most in (10**9, 500))
-    trajectory, read = _trajectory(), np.arange(FRAMES)
-    directions = SurfaceDirections.from_trajectory(trajectory, "y")
-    frames = FrameTimes(read.astype(np.uint32), read * 0.04)
-    layout = SwathLayout(frames, trajectory, "y", (LINES, LINES), 1, directions)
+    layout = _layout()
     for growing in (fine, coarse):
         growing.add([_scan()], layout, BRIGHT)
     maps = [growing.as_map() for growing in (fine, coarse)]

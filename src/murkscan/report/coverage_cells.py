@@ -149,12 +149,21 @@ def _window(
 
 
 def _cut_at_cells(strips: Strips, edge: float) -> tuple[Indices, Indices]:
-    """Cut strips into pieces of half a cell at most: the strip of each, and its cell."""
-    counts = np.maximum(np.ceil(2 * strips.length / edge), 1).astype(np.int64)
-    pieces = np.repeat(np.arange(len(counts)), counts)
-    number = np.arange(len(pieces)) - np.repeat(np.cumsum(counts) - counts, counts)
-    middle = strips.start[pieces] + strips.length[pieces] * (number + 0.5) / counts[pieces]
-    return pieces, _as_key(_number(middle, edge), _number(strips.across[pieces], edge))
+    """Cut strips both ways into pieces of half a cell at most: the strip of each, and its cell."""
+    long, wide = (
+        np.maximum(np.ceil(2 * side / edge), 1).astype(np.int64)
+        for side in (np.hypot(strips.length, strips.lean), strips.width)
+    )
+    counts = long * wide
+    strip = np.repeat(np.arange(len(counts)), counts)
+    number = np.arange(len(strip)) - np.repeat(np.cumsum(counts) - counts, counts)
+    on, beside = (
+        (number // wide[strip] + 0.5) / long[strip],
+        (number % wide[strip] + 0.5) / wide[strip],
+    )
+    along = strips.start[strip] + on * strips.length[strip]
+    aside = (on - 0.5) * strips.lean[strip] + (beside - 0.5) * strips.width[strip]
+    return strip, _as_key(_number(along, edge), _number(strips.across[strip] + aside, edge))
 
 
 def _number(place: Scalars, edge: float) -> Indices:

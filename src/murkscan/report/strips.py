@@ -19,6 +19,8 @@ class Strips:
     """How long it is, along the motion [m]."""
     across: Scalars
     """Where its middle is, across the motion [m]."""
+    lean: Scalars
+    """How far it goes across from its beginning to its end [m]."""
     width: Scalars
     """How wide it is [m]."""
     cause: Indices
@@ -47,6 +49,7 @@ def cut_strips(swath: Swath, *, hole: float, pitch: float, reach: Reach) -> Stri
         start=np.minimum(swath.along[one], swath.along[two]),
         length=length,
         across=(swath.across[one] + swath.across[two]) / 2,
+        lean=(swath.across[two] - swath.across[one]) * np.where(step < 0, -1, 1),
         width=pitch * (swath.depth[one] + swath.depth[two]) / 2,
         cause=np.where(cause == NO_LIGHT, reach.tell(far), cause),
     )
