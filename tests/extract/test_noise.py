@@ -31,3 +31,15 @@ def test_a_filter_answers_noise_alone_by_one_standard_deviation(kind):
     scores = answers / np.sqrt(noise.variance(level))
     # Grey from a mosaic mixes noise over some pixels: no single variance suits every filter.
     assert scores.std() == pytest.approx(1.0, rel=0.05 if kind == "mono" else 0.25)
+
+
+@pytest.mark.parametrize("block", [1, 8])
+def test_an_encoder_that_left_nearly_nothing_is_told_from_a_sensor_that_has_little_noise(block):
+    rng = np.random.default_rng(0)
+    shape = HEIGHT // block, WIDTH // block
+    # 1 of 20 pixels, or of an encoder's blocks, is a level brighter than the rest.
+    levels = np.kron(20 + (rng.random(shape) < 0.05), np.ones((block, block))).astype(np.uint8)
+    noise = learn_levels([levels])
+    assert noise.smoothed == (block > 1)
+    # What an encoder leaves are steps of a level, which look like stripes to a filter.
+    assert noise.variance(np.array([20.0]))[0] == pytest.approx(1.0 if block > 1 else 0.1, rel=0.2)

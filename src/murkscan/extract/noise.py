@@ -126,9 +126,10 @@ a mosaic's colours were filled in, 1.03 and less in grey pictures, with or witho
 (benchmarks/murk.py, c3 and lamp rows)."""
 _ALIKE = 1.2
 """The same, from which they share some: 1.5 in H.264 of 2.8 Mbit/s (there, too)."""
-_SMOOTHED = 2.0
+_SMOOTHED = 1.5
 """Ratio of the noise of far pixels to that of near ones, which then is less than rounding alone
-gives, from which an encoder has smoothed it away."""
+gives, from which an encoder has smoothed it away: 2.1 in H.265 of 2.8 Mbit/s, 3.4 to 5.4 in H.264
+of crf 23 and MJPEG, 1.08 and less where nothing was encoded (benchmarks/murk.py, seed 21)."""
 _STEP = 1.0
 """Least variance then [grey levels²]: what is left are blocks that differ by a level."""
 
@@ -153,24 +154,41 @@ def learn_levels(images: Pictures) -> Noise:
     every = _row_step(images)
     level = float(np.median([quantile_of_counts(own, 0.5) for own in counts]))
 
-    def learn(lag: int) -> tuple[Noise, float]:
-        law = _learn_law(images, white, lag, every)
+    def learn(bends: tuple[Sums, Sums]) -> tuple[Noise, float]:
+        law = _learn_law(*bends, white)
         return law, law.fixed + law.gain * level
 
-    law, near = learn(_NEAR)
-    if near < _QUANTISATION**2:
-        smoothed, far = learn(_FAR)
-        if far > _SMOOTHED * near:
-            return replace(smoothed, least=_STEP, shared=True, smoothed=True)
-    _, beside = learn(_NEXT)
-    law = learn(_APART_IN_MOSAIC)[0] if beside > _SHARED * near else law
-    return replace(law, shared=beside > _ALIKE * near > 0.0)
+    near = _list_bends(images, _NEAR, every)
+    law, alone = learn(near)
+    if alone < _QUANTISATION**2:
+        far = _list_bends(images, _FAR, every)
+        if _spread_of_most(far[1]) > _SMOOTHED * _spread_of_most(near[1]):
+            return replace(learn(far)[0], least=_STEP, shared=True, smoothed=True)
+    _, beside = learn(_list_bends(images, _NEXT, every))
+    if beside > _SHARED * alone:
+        law, _ = learn(_list_bends(images, _APART_IN_MOSAIC, every))
+    return replace(law, shared=beside > _ALIKE * alone > 0.0)
 
 
-def _learn_law(images: Pictures, white: float, lag: int, every: int) -> Noise:
-    """Estimate the noise from pixels that are `lag` apart, of every so many rows."""
+def _list_bends(images: Pictures, lag: int, every: int) -> tuple[Sums, Sums]:
+    """List levels and differences of pixels that are `lag` apart, of every so many rows."""
     listed = map_at_once(lambda image: list_fourth_differences(image, lag, every), images)
     levels, bends = (np.concatenate(parts) for parts in zip(*listed, strict=True))
+    return levels, bends
+
+
+def _spread_of_most(bends: Sums) -> float:
+    """Give the variance of a pixel by differences that count no more than rounding explains.
+
+    Where an encoder has left nearly all pixels alike, their own spread is 0, and tells no others.
+    """
+    most = round(_CLOSE * math.sqrt(_SQUARES) * _QUANTISATION)
+    sizes = np.bincount(np.minimum(np.abs(bends), most), minlength=most + 1)
+    return float(sizes @ np.arange(most + 1) ** 2 / max(len(bends), 1)) / _SQUARES
+
+
+def _learn_law(levels: Sums, bends: Sums, white: float) -> Noise:
+    """Estimate the noise from differences, and the sums of the levels of their pixels."""
     levels, bends = sort_by(levels, bends, int(levels.max(initial=0)))
     dark = int(np.searchsorted(levels, _DARKER * white * _REACH))
     bins = _bin_bends(levels[:dark], bends[:dark])
