@@ -3,6 +3,7 @@
 import os
 import signal
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -48,10 +49,30 @@ def _check_types(request: pytest.FixtureRequest) -> Iterator[None]:
 
     These call small functions so often that checking them would be half of the time.
     """
-    is_marked = request.node.get_closest_marker("without_types") is not None
-    config.update("jaxtyping_disable", request.path.parent.name in RUNS or is_marked)
+    config.update("jaxtyping_disable", _is_a_run(request))
     yield
     config.update("jaxtyping_disable", False)
+
+
+def _is_a_run(request: pytest.FixtureRequest) -> bool:
+    """Tell whether a file of tests runs what rooms do together, or is marked as if it did."""
+    is_marked = request.node.get_closest_marker("without_types") is not None
+    return request.path.parent.name in RUNS or is_marked
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _draw_small(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Draw a scan's pictures small in whole runs, of which they would be half of the time.
+
+    `view` itself has tests of what is drawn, and `survey/test_view.py` of how large.
+    """
+    with pytest.MonkeyPatch.context() as patch:
+        if _is_a_run(request):
+            from murkscan.survey import view
+            from murkscan.view import draw_pictures
+
+            patch.setattr(view, "draw_pictures", partial(draw_pictures, size=(320, 240)))
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -1,43 +1,43 @@
 """Every example runs."""
 
-import json
-import os
-import subprocess
-import sys
+import io
+import runpy
+import tempfile
+import traceback
+from contextlib import redirect_stdout
 from pathlib import Path
 
 import pytest
 
-EXAMPLES = sorted((Path(__file__).parents[1] / "examples").glob("*.py"))
-RUN_ALL = """
-import contextlib, io, json, runpy, sys, traceback
+pytestmark = pytest.mark.without_types
 
-sys.path.insert(0, sys.argv[1].rpartition("/")[0])
-for example in sys.argv[1:]:
-    said, trouble = io.StringIO(), ""
-    try:
-        with contextlib.redirect_stdout(said):
-            runpy.run_path(example, run_name="__main__")
-    except Exception:
-        trouble = traceback.format_exc()
-    print(json.dumps([said.getvalue(), trouble]), flush=True)
-"""
-"""In one process: to load the libraries for each takes longer than to run it."""
+EXAMPLES = sorted((Path(__file__).parents[1] / "examples").glob("*.py"))
 
 
 @pytest.fixture(scope="module")
 def outcomes(tmp_path_factory):
-    """Run all examples, which share a scan in a folder for temporary files of their own."""
-    folder = tmp_path_factory.mktemp("examples")
-    done = subprocess.run(
-        [sys.executable, "-c", RUN_ALL, *map(Path.as_posix, EXAMPLES)],
-        cwd=folder,
-        env={**os.environ, "TMPDIR": str(folder), "MPLBACKEND": "Agg"},
-        stdout=subprocess.PIPE,
-        text=True,
-        check=True,
-    )
-    return dict(zip(EXAMPLES, map(json.loads, done.stdout.splitlines()), strict=True))
+    """Run all examples here, since to load the libraries for each takes longer than to run it.
+
+    They share a scan in a folder for temporary files of their own.
+    """
+    with pytest.MonkeyPatch.context() as patch:
+        folder = tmp_path_factory.mktemp("examples")
+        patch.chdir(folder)
+        patch.setattr(tempfile, "tempdir", str(folder))
+        patch.setenv("MPLBACKEND", "Agg")
+        patch.syspath_prepend(str(EXAMPLES[0].parent))
+        return {example: _run(example) for example in EXAMPLES}
+
+
+def _run(example):
+    """Give what an example says, and the trouble that it has."""
+    said, trouble = io.StringIO(), ""
+    try:
+        with redirect_stdout(said):
+            runpy.run_path(str(example), run_name="__main__")
+    except Exception:
+        trouble = traceback.format_exc()
+    return said.getvalue(), trouble
 
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)

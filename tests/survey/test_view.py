@@ -9,6 +9,7 @@ import pytest
 
 from murkscan.errors import Degenerate, FormatError, InputError, MissingResult
 from murkscan.io.deviation_files import save_deviation_ply
+from murkscan.io.images import read_image
 from murkscan.mesh import GridMesh
 from murkscan.project import CLOUD, MEASURE, MESH, CloudResult, MeasureResult, MeshResult, Project
 from murkscan.survey.compared import compare_models
@@ -16,7 +17,7 @@ from murkscan.survey.measured import measurement_files
 from murkscan.survey.shown import DEVIATION, load_surface
 from murkscan.survey.view import draw_views
 from murkscan.types.deviation import Deviation
-from murkscan.view import render_viewer
+from murkscan.view import draw_pictures, render_viewer
 
 from ..projects import MERGED, finish, save_cloud
 from ..scans import scan_cloud, step
@@ -76,10 +77,12 @@ def measure_deviation(project, cloud, *, name="deviation", of=None):
     finish(project, MEASURE, MeasureResult("deviation"), inputs=inputs, make=save, label=name)
 
 
-def test_a_merged_cloud_gets_pictures_and_a_page(tmp_path):
+def test_a_merged_cloud_gets_pictures_and_a_page(tmp_path, monkeypatch):
+    monkeypatch.setattr("murkscan.survey.view.draw_pictures", draw_pictures)  # as large as they are
     project, cloud = merged(tmp_path / "both", SCAN)
     result = draw_views(project)
     assert (len(result.pictures), result.points) == (9, len(cloud))
+    assert read_image(project.root / "view/front.png").shape[:2] == (960, 1280)
     content = shown(project)
     assert content["title"] == "both"
     assert content["pictures"] == "pictures.html"

@@ -16,7 +16,7 @@ from murkscan.types.navigation import Navigation, NavigationAccuracy, Readings
 
 pytestmark = pytest.mark.without_types
 
-DURATION, SPEED, GAP = 8.0, 0.1, 0.08
+DURATION, SPEED, GAP = 5.0, 0.1, 0.08
 SEEDS, DRAWS = 24, 32
 SETTINGS = AdjustSettings()
 ACCURACY = NavigationAccuracy(
