@@ -22,13 +22,18 @@ COLUMNS = [
 ]  # fmt: skip
 
 
-def _scene(changes=()):
+def _scene(changes=(), factor=2):
     text, name, folder = read_scene("sphere-c1.5")
     text = text.replace("frames = 100", "frames = 6").replace("0.0, 200.0,", "0.0, 0.0,")
     for old, new in changes:
         assert old in text
         text = text.replace(old, new)
-    return smaller(parse_scene(text, name, folder), 2), text
+    return smaller(parse_scene(text, name, folder), factor), text
+
+
+def _tiny(frames, *changes):
+    """Give the scene in pictures of 120 × 96: enough for what is asked of files alone."""
+    return _scene([*changes, ("frames = 6", f"frames = {frames}")], 6)[0]
 
 
 @pytest.fixture(scope="module")
@@ -86,9 +91,9 @@ def test_the_same_scene_and_seed_give_the_same_bytes(written, tmp_path):
 
 
 @pytest.mark.parametrize("codec", ["ffv1", "h264", "h265"])
-def test_a_video_keeps_the_grey_levels(codec, tmp_path, written):
+def test_a_video_keeps_the_grey_levels(codec, tmp_path):
     given = ("peak_grey = 200", f'peak_grey = 200\ncodec = "{codec}"\ncrf = 12')
-    scene, _ = _scene([given, ("frames = 6", "frames = 2")])
+    scene = _tiny(2, given)
     made = simulate_recording(scene, tmp_path)
     assert made.recording.name == "recording.mkv"
     recording = ms.open_recording(made.recording, fields="top-first")
@@ -111,7 +116,7 @@ def test_the_log_is_late_noisy_and_of_the_vehicle(tmp_path):
         'principal_point = [360, 288]\n[[rig.laser]]\nkind = "baseline_angle"\nbaseline_mm = 300\n'
         'angle_deg = 71\naxis = "y"\n[rig.mount]\ntranslation_mm = [100.0, 0.0, 0.0]\n',
     )
-    scene, _ = _scene([motion, mount])
+    scene, _ = _scene([motion, mount], 6)
     simulate_recording(scene, tmp_path)
     log, poses = load_poses(tmp_path / "navigation.csv"), load_poses(tmp_path / "poses.csv")
     assert np.diff(log.times) == pytest.approx(0.05)
@@ -150,9 +155,8 @@ def test_a_scene_written_with_the_truth_can_be_run_again(tmp_path):
 
 def test_a_folder_is_used_again_but_no_photos_are_lost(tmp_path):
     out = tmp_path / "out"
-    scene, _ = _scene([("frames = 6", "frames = 2")])
-    simulate_recording(scene, out)
-    shorter, _ = _scene([("frames = 6", "frames = 1")])
+    simulate_recording(_tiny(2), out)
+    shorter = _tiny(1)
     simulate_recording(shorter, out)
     assert len(list((out / "frames").glob("*.png"))) == 1
     assert ms.open_recording(out / "frames", fields="top-first").num_frames == 2
@@ -171,13 +175,13 @@ def test_a_folder_that_no_simulation_has_made_stays_as_it_is(tmp_path, name):
     mine.parent.mkdir(exist_ok=True)
     mine.write_text("mine")
     with pytest.raises(ms.InputError, match="not of a simulation; give a new folder"):
-        simulate_recording(_scene([("frames = 6", "frames = 1")])[0], tmp_path)
+        simulate_recording(_tiny(1), tmp_path)
     assert mine.read_text() == "mine"
     assert len(list(tmp_path.iterdir())) == 1
 
 
 def test_a_simulation_that_was_stopped_is_made_anew_in_its_folder(tmp_path):
-    scene, _ = _scene([("frames = 6", "frames = 2")])
+    scene = _tiny(2)
 
     def stop(word, done, total):
         if done:

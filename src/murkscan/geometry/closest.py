@@ -44,7 +44,9 @@ def find_closest(points: Points, mesh: Mesh, *, within: float) -> Closest:
     triangles = mesh.vertices[mesh.faces]
     order = sort_triangles(triangles.mean(axis=1))
     triangles = triangles[order]
-    number, weights, distance = find_nearest(points, triangles, bound_nodes(triangles), within)
+    # Rows side by side in memory, however they were cut out: each way is compiled by itself.
+    rows = np.ascontiguousarray(points)
+    number, weights, distance = find_nearest(rows, triangles, bound_nodes(triangles), within)
     face = np.where(number >= 0, order[number], -1)
     places = np.full((len(points), 3), np.nan)
     is_at_rim = np.zeros(len(points), bool)
