@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from murkscan.motion.adjust import AdjustSettings, Pass
 from murkscan.motion.adjust.checks import compare_passes
@@ -15,6 +16,7 @@ from murkscan.motion.adjust.solve import State
 from murkscan.motion.adjust.strays import compare_legs, drop_strays
 from murkscan.motion.adjust.ties import Ties, as_seen, linearise
 from murkscan.types.navigation import Navigation, NavigationAccuracy
+from murkscan.types.pose import Pose
 from murkscan.types.trajectory import Trajectory
 
 RATE, SPEED, STAND_OFF, LINES, ASIDE = 20.0, 0.1, 0.6, 160, 0.15
@@ -98,6 +100,20 @@ def test_what_both_passes_have_wrong_alike_is_not_seen(true_ties, axis):
     sigma, force = pull(true_ties, axis)
     assert sigma > 0.5
     assert abs(force) < 3
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_noise_does_not_turn_all_that_was_seen(true_ties, axis):
+    """A point that is off along its sheet is less off along a normal that its sheet grazes."""
+    ties, paths = true_ties
+    angle, knots = 1e-3, paths[0].knots
+    times = np.linspace(knots.start, knots.end, 20 * knots.num_pieces)
+    turn = Pose(Rotation.from_rotvec(angle * np.eye(3)[axis]).as_matrix(), np.zeros(3))
+    turned = [fit_path(path, path.as_trajectory(times).carry(turn)) for path in paths]
+    residuals = linearise(ties, paths).residuals
+    change = (linearise(ties, turned).residuals - residuals) / angle
+    # Nothing tells how all of it lies: ties ask for less than an attitude does that is known to 3°.
+    assert abs((residuals * change / ties.variance).sum()) < 1 / np.deg2rad(3)
 
 
 def test_a_lateral_shift_is_seen_without_bias(true_ties):

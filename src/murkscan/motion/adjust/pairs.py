@@ -24,10 +24,6 @@ _BEYOND = 1.0
 _GOLDEN = (5**0.5 - 1) / 2
 _SLOWEST = 0.01
 """Speed of a line over the surface below which it is not known where it was when [m/s]."""
-_TOGETHER = 9
-"""Facets whose planes share their points, three by three cells: they slant wrongly together, and
-all of them tell of a place beside them what one tells. Counted as so many that are free, their
-slopes' noise would bend a way that its log leaves open."""
 _STEEP = 0.3
 """Cosine of the angle between a sheet and a surface's normal below which it only grazes it."""
 
@@ -179,52 +175,91 @@ def _tie(
     one, two = a.facets, b.facets
     size = max(one.leg.size, two.leg.size)
     match = bumps_match[one.row[first]]
-    direction = np.where(
+    direction, alike = _mean_normals(a, b, first, second, match)
+    between = one.points[first] - two.points[second]
+    off = np.einsum("ni,ni->n", direction, between)
+    of_one, of_two = _middles(a, first, match), _middles(b, second, match)
+    there_a, there_b = _meet(one.slants[first], two.slants[second], direction, off, of_one, of_two)
+    aside = between + there_a - there_b
+    lateral = np.linalg.norm(aside, axis=1)
+    kept = (alike > _AGREE) & (np.abs(off) < reach) & (lateral < _BEYOND * size)
+    kept &= _are_inner(one)[first] & _are_inner(two)[second]
+    variance = of_one + of_two + _beside(one, first, aside) + _beside(two, second, aside)
+    times_a, own_a = a.at_places(first[kept], there_a[kept])
+    times_b, own_b = b.at_places(second[kept], (aside + there_b)[kept])
+    count = len(own_a)
+    return Ties(
+        np.full(count, one.leg.number),
+        times_a,
+        own_a,
+        np.full(count, two.leg.number),
+        times_b,
+        own_b,
+        direction[kept],
+        -off[kept],
+        variance[kept],
+    )
+
+
+def _mean_normals(
+    a: Side, b: Side, first: Indices, second: Indices, match: Mask
+) -> tuple[Directions, Scalars]:
+    """Give the mean normals of pairs, of bumps or of patches, and how much the two are alike."""
+    total = np.where(
         match[:, None],
         a.directions[first] + b.directions[second],
         a.smooth[first] + b.smooth[second],
     )
-    length = np.linalg.norm(direction, axis=1)
-    direction /= np.maximum(length, 1e-12)[:, None]
-    between = one.points[first] - two.points[second]
-    off = np.einsum("ni,ni->n", direction, between)
-    aside = between - off[:, None] * _along_slants(one, two, first, second, direction)
-    lateral = np.linalg.norm(aside, axis=1)
-    kept = (length > 2 * _AGREE) & (np.abs(off) < reach) & (lateral < _BEYOND * size)
-    kept &= _are_inner(one)[first] & _are_inner(two)[second]
-    first, second, aside, match = first[kept], second[kept], aside[kept], match[kept]
-    variance = _variance(one, first, aside) + _variance(two, second, aside)
-    variance = variance + np.where(match, 0.0, a.relief + b.relief)
-    count = len(first)
-    times, own = b.at_places(second, aside)
-    return Ties(
-        np.full(count, one.leg.number),
-        one.leg.row_times[one.row[first]],
-        one.own[first],
-        np.full(count, two.leg.number),
-        times,
-        own,
-        direction[kept],
-        np.zeros(count),
-        variance,
-    )
+    length = np.linalg.norm(total, axis=1)
+    return total / np.maximum(length, 1e-12)[:, None], length / 2
 
 
-def _along_slants(
-    one: Facets, two: Facets, first: Indices, second: Indices, direction: Directions
-) -> Directions:
-    """Give by what one comes from one surface to the other, for each metre along the direction.
+def _middles(side: Side, which: Indices, match: Mask) -> Scalars:
+    """Give the variance of the middles of some facets [m²], and of bumps where none match."""
+    facets = side.facets
+    own = facets.variance[which] / facets.count[which]
+    return np.asarray(own + np.where(match, 0.0, side.relief))
+
+
+def _meet(
+    slant_a: Directions,
+    slant_b: Directions,
+    direction: Directions,
+    off: Scalars,
+    of_one: Scalars,
+    of_two: Scalars,
+) -> tuple[Points, Points]:
+    """Give by what one comes from both surfaces to where they meet, each along its own sheet.
 
     A point that is off lies off along its sheet. Were places compared that lie over one another
     along the normal, noise of a height would be one of the moment, too, in step with it, and ways
-    that let all heights shrink would seem to fit better.
+    that let all heights shrink would seem to fit better. So would ways that turn sheets until they
+    graze, were the arm of a turn to reach to the noisy point: of what is off by its sheet's length
+    less is then off along the normal. Of thousands of ties that pull outweighs what a log says, and
+    it never ends, since noise is as large as before in facets made anew. A place's arm has to reach
+    to where the place most likely is.
+
+    Args:
+        slant_a: Along which points of the first sheets err.
+        slant_b: Along which those of the second do.
+        direction: Normals.
+        off: How far the first lies in front of the second [m].
+        of_one: Variance of the first height [m²].
+        of_two: Of the second.
+
+    References:
+        Fuller, Measurement error models, 1987, section 3.2: slopes are taken at the estimate of
+        the true point.
     """
-    slant, other = one.slants[first], two.slants[second]
-    same = np.sign(np.einsum("ni,ni->n", slant, other))[:, None]
-    slant = slant + same * other
-    steep = np.einsum("ni,ni->n", slant, direction)
-    steep = np.copysign(np.maximum(np.abs(steep), _STEEP * np.linalg.norm(slant, axis=1)), steep)
-    return slant / steep[:, None]
+
+    def along(slant: Directions) -> Directions:
+        steep = np.einsum("ni,ni->n", slant, direction)
+        steep = np.copysign(np.maximum(np.abs(steep), _STEEP), steep)
+        return slant / steep[:, None]
+
+    share = of_one / np.maximum(of_one + of_two, 1e-30)
+    there_a = -(share * off)[:, None] * along(slant_a)
+    return there_a, ((1 - share) * off)[:, None] * along(slant_b)
 
 
 def _are_inner(facets: Facets) -> Mask:
@@ -238,8 +273,8 @@ def _are_inner(facets: Facets) -> Mask:
     return inner
 
 
-def _variance(facets: Facets, which: Indices, aside: Directions) -> Scalars:
-    """Give what one facet adds to a tie's variance: of its middle, and of its slope far from it."""
+def _beside(facets: Facets, which: Indices, aside: Directions) -> Scalars:
+    """Give what a facet's slope adds to the variance of a tie halfway beside its middle [m²]."""
     along = np.einsum("ni,nki->nk", aside, facets.axes[which])
     slope = np.einsum("nk,nk->n", along**2, facets.slope_variance[which]) / 4
-    return facets.variance[which] * (1 / facets.count[which] + _TOGETHER * slope)
+    return facets.variance[which] * slope
