@@ -336,6 +336,7 @@ class Dive:
 class Truth:
     """What the first sheet of a pass really saw, without noise."""
 
+    way: Way
     profile: np.ndarray
     line: np.ndarray
     own: np.ndarray
@@ -373,7 +374,7 @@ def make_dive(case, seed):
             )
         )
         first_sheet = laser == 0
-        truths.append(Truth(*(one[first_sheet] for one in (profile, line, own, world))))
+        truths.append(Truth(way, *(one[first_sheet] for one in (profile, line, own, world))))
     return Dive(hull, passes, truths)
 
 
