@@ -75,6 +75,12 @@ ROWS: dict[str, Row] = {
     "c3-speckle7": _hull(95, 98.5, to.with_light(speckle=0.7)),
     "c3-isp": _hull(95, 98.5, to.with_processing(gamma=0.45, sharpening=1.0)),
     "c3-denoise": _hull(95, 98.5, to.with_recorder(codec="ffv1", denoise=0.8)),
+    "c1.5-stream": Row(
+        1.5,
+        (to.with_things, to.with_recorder(codec="h264", crf=23, streamed=True)),
+        95,
+        98.5,
+    ),
     "c3-h264-2.8": _hull(95, 98.5, to.with_recorder(codec="h264", bitrate=2.8e6)),
     "c3-h265-2.8": _hull(95, 98.5, to.with_recorder(codec="h265", bitrate=2.8e6)),
     "c3-mjpeg": _hull(95, 98.5, to.with_recorder(codec="mjpeg", quality=5)),

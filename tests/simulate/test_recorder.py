@@ -96,6 +96,7 @@ def test_denoising_lowers_noise_and_keeps_what_moves():
         {"codec": "h264", "bitrate": 4e6},
         {"codec": "h265", "crf": 12},
         {"codec": "h265", "bitrate": 4e6},
+        {"codec": "h264", "crf": 12, "streamed": True},
         {"codec": "mjpeg", "quality": 2},
     ],
 )
@@ -131,6 +132,7 @@ def test_a_lower_rate_makes_a_smaller_file(tmp_path):
     [
         (lambda: Recorder("mjpeg", quality=0), "sensor.quality"),
         (lambda: Recorder("ffv1", bitrate=1e6), "goes with h264"),
+        (lambda: Recorder("mjpeg", streamed=True), "sensor.streamed goes with h264"),
         (lambda: Recorder("h264", bitrate=1.0), "sensor.bitrate_mbit_s must lie"),
         (lambda: Recorder(denoise=1.0), "sensor.denoise"),
         (lambda: Processing(gamma=0.0), "sensor.gamma"),

@@ -34,6 +34,7 @@ def writing_video(
     crf: int = 23,
     bitrate: float | None = None,
     quality: int = 5,
+    streamed: bool = False,
     interlaced: bool = False,
     is_colour: bool = False,
 ) -> Iterator[Callable[[np.ndarray, float], None]]:
@@ -47,6 +48,8 @@ def writing_video(
         crf: Quality of H.264 and H.265: 0 is best, 51 worst.
         bitrate: Bits a second of H.264 and H.265, in place of their quality [1/s].
         quality: Quantiser of MJPEG: 1 is best, 31 worst.
+        streamed: Whether H.264 and H.265 are encoded as a camera streams them: in haste, without a
+            look at later pictures.
         interlaced: Whether pictures hold two fields, the upper one first; H.264 then codes them so.
         is_colour: Whether pictures are red, green, blue rather than grey.
 
@@ -71,8 +74,8 @@ def writing_video(
         stream.width, stream.height = size
         stream.pix_fmt = _FORMATS.get(codec, "bgr0" if is_colour else "gray")
         stream.time_base = stream.codec_context.time_base = Fraction(1, _TICKS)
-        stream.codec_context.options = _options(codec, interlaced) | (
-            _rate(codec, crf, bitrate, quality)
+        stream.codec_context.options = (
+            _options(codec, interlaced) | _rate(codec, crf, bitrate, quality) | _haste(streamed)
         )
 
         def write(picture: np.ndarray, time: float) -> None:
@@ -105,6 +108,10 @@ def _options(codec: VideoCodec, interlaced: bool) -> dict[str, str]:
         return {"threads": "1"}
     fields = {"flags": "+ilme+ildct", "x264-params": "tff=1"} if interlaced else {}
     return {"preset": "medium", "threads": "1", **fields}
+
+
+def _haste(streamed: bool) -> dict[str, str]:
+    return {"preset": "ultrafast", "tune": "zerolatency"} if streamed else {}
 
 
 def _rate(codec: VideoCodec, crf: int, bitrate: float | None, quality: int) -> dict[str, str]:

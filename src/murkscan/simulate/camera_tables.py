@@ -15,6 +15,7 @@ from .window import Window
 
 _OF_OTHERS = {
     "gamma", "sharpening", "sharpening_px", "denoise", "codec", "crf", "bitrate_mbit_s", "quality",
+    "streamed",
 }  # fmt: skip
 """Keys of [sensor] that are no sensor's but its camera's and recorder's."""
 
@@ -115,6 +116,7 @@ class SensorTable(Table):
     crf: int = 23
     bitrate_mbit_s: FiniteFloat | None = None
     quality: int = 5
+    streamed: bool = False
 
     def as_processing(self) -> Processing:
         """Give what the camera's processor does."""
@@ -123,7 +125,7 @@ class SensorTable(Table):
     def as_recorder(self) -> Recorder:
         """Give what the recorder does."""
         bitrate = None if self.bitrate_mbit_s is None else 1e6 * self.bitrate_mbit_s
-        return Recorder(self.codec, self.crf, bitrate, self.quality, self.denoise)
+        return Recorder(self.codec, self.crf, bitrate, self.quality, self.streamed, self.denoise)
 
     def as_sensor(self) -> Sensor:
         """Give the sensor."""

@@ -13,6 +13,7 @@ Codec = Literal["png", "ffv1", "h264", "h265", "mjpeg"]
 
 _CHANGE = 0.024
 """Change between pictures that counts as noise, as a share of white: 6 of 255 grey levels."""
+_STREAMED = ("h264", "h265")
 _BOUNDS = (("crf", 0, 51), ("quality", 1, 31), ("denoise", 0, 0.99))
 
 
@@ -28,6 +29,8 @@ class Recorder:
     """Bits a second of H.264 and H.265, in place of a quality [1/s]."""
     quality: int = 5
     """Quality of MJPEG by its quantiser, 1 (best) to 31."""
+    streamed: bool = False
+    """Whether H.264 and H.265 are encoded while the camera films, as its own chip does."""
     denoise: float = 0.0
     """Share that a picture takes from the one before wherever it has hardly changed."""
 
@@ -40,9 +43,11 @@ class Recorder:
                 raise InputError(
                     f"sensor.{name} must lie between {low} and {high}, got {getattr(self, name):g}."
                 )
+        if self.streamed and self.codec not in _STREAMED:
+            raise InputError(f"sensor.streamed goes with h264 and h265, not {self.codec}.")
         if self.bitrate is None:
             return
-        if self.codec not in ("h264", "h265"):
+        if self.codec not in _STREAMED:
             raise InputError(f"sensor.bitrate_mbit_s goes with h264 and h265, not {self.codec}.")
         if not 1e4 <= self.bitrate <= 1e9:
             raise InputError(

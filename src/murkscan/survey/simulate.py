@@ -204,6 +204,7 @@ def _keeping(scene: Scene, files: StageFiles) -> Iterator[tuple[str, Keep]]:
                 crf=recorder.crf,
                 bitrate=recorder.bitrate,
                 quality=recorder.quality,
+                streamed=recorder.streamed,
                 interlaced=scene.sensor.interlaced,
                 is_colour=scene.sensor.colour != "mono",
             ) as write,
