@@ -29,8 +29,12 @@ _CHANGES = ("os.rename", "os.remove", "os.mkdir", "os.rmdir", "os.truncate")
 
 
 def make_inputs(folder: Path) -> None:
-    """Simulate two small recordings of the same hull, and scan both."""
+    """Simulate two small recordings of the same hull, and scan both, in a process of its own."""
+    from functools import partial
+
+    from murkscan.survey import view
     from murkscan.survey.simulate import simulate_recording
+    from murkscan.view import draw_pictures
 
     from .scenes import hull_scene, smaller
 
@@ -38,6 +42,7 @@ def make_inputs(folder: Path) -> None:
         return
     scene = smaller(hull_scene(num_frames=FRAMES), 3)
     simulate_recording(scene, folder / "recording")
+    view.draw_pictures = partial(draw_pictures, size=(320, 240))  # as large, they take longest
     run_scan(folder, folder / "a")
     shutil.copytree(folder / "a", folder / "b")
 

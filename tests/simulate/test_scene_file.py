@@ -8,6 +8,8 @@ from murkscan.io.acceptance_toml import parse_acceptance
 from murkscan.optics.sensor import Sensor
 from murkscan.simulate import Simulator, list_scenes, load_scene, parse_scene, read_scene
 
+from ..scenes import smaller
+
 NAMES = [
     "plane", "plane-c3", "plane-hd", "plane-c3-hd", "hull", "hull-c3", "hull-hd", "hull-c3-hd",
     "sphere-c6", "ballbar-c1.5", "plate-c0.3-hd", "step", "stairs-c0.3-hd", "chessboard",
@@ -75,7 +77,8 @@ def test_bad_scenes_are_one_sentence_that_names_the_key(old, new, words):
     text, name, folder = read_scene("plane-c1.5")
     assert old in text
     with pytest.raises((FormatError, InputError), match=words):
-        Simulator.of(parse_scene(text.replace(old, new), name, folder))
+        # What only shows once the light is drawn shows in a small picture, too.
+        Simulator.of(smaller(parse_scene(text.replace(old, new), name, folder), 4))
 
 
 def test_a_port_inside_the_lens_is_refused(tmp_path):
@@ -116,7 +119,7 @@ def test_a_mesh_file_of_one_s_own_is_scanned(tmp_path):
     (tmp_path / "rigs").mkdir()
     (tmp_path / "rigs/pal.toml").write_text((folder / "rigs/pal.toml").read_text())
     own, ours = parse_scene(text, name, tmp_path), load_scene("plane")
-    mine, theirs = (Simulator.of(scene).draw_frame(3) for scene in (own, ours))
+    mine, theirs = (Simulator.of(smaller(scene)).draw_frame(3) for scene in (own, ours))
     # STL keeps single precision.
     np.testing.assert_allclose(mine.stripe.points, theirs.stripe.points, atol=1e-5)
 
@@ -139,7 +142,7 @@ def test_a_name_that_is_none_is_told(name):
 
 @pytest.mark.parametrize("name", ["chessboard", "chessboard-laser", "stairs", "sphere-c6"])
 def test_shipped_scenes_show_something_and_are_finite(name):
-    simulator = Simulator.of(load_scene(name))
+    simulator = Simulator.of(smaller(load_scene(name)))
     frame = simulator.draw_frame(len(simulator.scene) // 2)
     assert np.isfinite(frame.light.total).all()
     assert np.isfinite(frame.stripe.snr).all()

@@ -62,7 +62,7 @@ def test_true_centres_on_a_plane_triangulate_onto_it_through_ports(name):
 def test_true_centres_on_a_sphere_lie_on_its_mesh_through_ports(name):
     from murkscan.geometry.mesh_distance import distance_to_mesh
 
-    scene = smaller(load_scene(name), 3 if name.endswith("-hd") else 1)
+    scene = smaller(load_scene(name), 3 if name.endswith("-hd") else 2)
     number = len(scene) // 2
     stripe = Simulator.of(scene).draw_frame(number).stripe
     on_sphere = stripe.points[:, 2] < 1.1
