@@ -31,23 +31,27 @@ WORLD_FROM_BOARD = Pose(
 )
 
 
-def vehicle_at(time, turns):
+def vehicles_at(times, turns):
     """Give world_from_vehicle: a slow dance before the board, turning by `turns` [rad]."""
-    x, y, z = turns * np.sin(time * np.array([0.31, 0.23, 0.17]) + [0.3, 1.1, 2.0])
-    tilt = Rotation.from_euler("xyz", [x, y, z]).as_matrix()
-    away = np.array([0.1 * np.sin(0.4 * time), 0.08 * np.cos(0.29 * time), -0.9])
-    middle = BOARD.points().mean(axis=0)
-    board_from_camera = Pose(tilt, middle + tilt @ away)
-    return WORLD_FROM_BOARD @ board_from_camera @ MOUNT.inverse()
+    rates, phases = [0.31, 0.23, 0.17], [0.3, 1.1, 2.0]
+    tilts = Rotation.from_euler("xyz", np.array(turns) * np.sin(np.outer(times, rates) + phases))
+    away = np.stack(
+        [0.1 * np.sin(0.4 * times), 0.08 * np.cos(0.29 * times), np.full(len(times), -0.9)], axis=1
+    )
+    cameras = Rotation.from_matrix(WORLD_FROM_BOARD.rotation) * tilts
+    places = WORLD_FROM_BOARD @ (BOARD.points().mean(axis=0) + tilts.apply(away))
+    camera_from_vehicle = MOUNT.inverse()
+    return Trajectory(
+        times,
+        places + cameras.apply(camera_from_vehicle.translation),
+        (cameras * Rotation.from_matrix(camera_from_vehicle.rotation)).as_quat(scalar_first=True),
+    )
 
 
 @functools.cache
 def dance(turns):
     """Log every twentieth of a second of the dance, by the clock of the photos."""
-    moments = np.arange(-70.0, 170.0, 0.05)
-    poses = [vehicle_at(t, np.array(turns)) for t in moments]
-    places = np.stack([p.translation for p in poses])
-    return Trajectory(moments, places, np.concatenate([p.as_quaternion() for p in poses]))
+    return vehicles_at(np.arange(-70.0, 170.0, 0.05), turns)
 
 
 @functools.cache
@@ -57,11 +61,10 @@ def record(turns=(0.5, 0.5, 0.5), *, noise=0.0, clock=0.0, rig=RIG, num=20):
     log = replace(dance(turns), times=dance(turns).times + clock)
     times = np.linspace(0, 100, num)
     index = refractive_index(rig.water, rig.wavelength)
-    views = []
-    for number, time in enumerate(times):
-        camera_from_board = (
-            MOUNT.inverse() @ vehicle_at(time, np.array(turns)).inverse() @ WORLD_FROM_BOARD
-        )
+    views, vehicles = [], vehicles_at(times, turns)
+    for number, place in enumerate(vehicles.positions):
+        vehicle = Pose.from_quaternion(vehicles.quaternions[number : number + 1], place)
+        camera_from_board = MOUNT.inverse() @ vehicle.inverse() @ WORLD_FROM_BOARD
         corners = project(rig.camera, camera_from_board @ BOARD.points(), index)
         views.append(BoardView(f"{number}", corners + random.normal(0, noise, corners.shape)))
     return views, times, log
