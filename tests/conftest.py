@@ -26,7 +26,8 @@ LONG = (
     "survey/test_simulate.py", "geometry/test_alignment.py", "calibrate/test_mount.py",
     "test_examples.py", "studio/test_clicks.py", "survey/test_kills.py", "survey/test_demo.py",
     "survey/test_scan.py", "extract/test_real_flaws.py",
-    "extract/test_murk.py", "cli/test_commands.py", "capture/test_fields.py",
+    "extract/test_murk.py", "survey/test_executors.py", "survey/test_cloud.py",
+    "capture/test_fields.py",
 )  # fmt: skip
 """Files that take half a minute or more. They are run first, so that no core is left with one when
 all else is done; and those that begin together compile different loops, not the same ones each."""
