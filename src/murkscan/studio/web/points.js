@@ -17,6 +17,9 @@ const ROW = 4, SAMPLE = 2000;
 // Points that are drawn at most, some for each pixel: an hour's dive would have millions, of which a page
 // without a graphics chip draws no ten a second.
 const MOST = 200_000;
+// Milliseconds from one picture to the next, while the model is turned, above which every second point is left
+// out until it stands again; and every how many are drawn at least.
+const SLOW = 60, SPARSEST = 16;
 
 export function pointView(canvas) {
   const gl = canvas.getContext("webgl2", { antialias: false, preserveDrawingBuffer: false });
@@ -24,7 +27,8 @@ export function pointView(canvas) {
   const program = link(gl);
   const buffer = gl.createBuffer();
   const place = Object.fromEntries(["turn", "middle", "scale", "depths", "size"].map((name) => [name, gl.getUniformLocation(program, name)]));
-  let data = new Float32Array(1 << 16), count = 0, room = 0, yaw = 0, pitch = 0, zoom = 1, isDue = false;
+  let data = new Float32Array(1 << 16), count = 0, room = 0, yaw = 0, pitch = 0, zoom = 1, isDue = false, from = null;
+  let every = 1;
   let low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
   gl.useProgram(program);
   gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
@@ -92,6 +96,7 @@ export function pointView(canvas) {
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     if (!count) return;
     gl.enable(gl.DEPTH_TEST);
+    const shown = Math.floor(count / every);
     const middle = low.map((value, k) => (value + high[k]) / 2);
     const turn = turned(yaw, pitch);
     const [w, h] = extent(turn, low, high);
@@ -100,14 +105,25 @@ export function pointView(canvas) {
     gl.uniform3fv(place.middle, middle);
     gl.uniform2f(place.scale, most / width, most / height);
     gl.uniform2f(place.depths, ...depths());
-    gl.uniform1f(place.size, Math.max(1.5 * ratio, Math.min(6 * ratio, 1.2 * Math.sqrt(width * height / count))));
-    gl.drawArrays(gl.POINTS, 0, count);
+    gl.uniform1f(place.size, Math.max(1.5 * ratio, Math.min(6 * ratio, 1.2 * Math.sqrt(width * height / shown))));
+    gl.vertexAttribPointer(0, ROW, gl.FLOAT, false, every * ROW * 4, 0);
+    gl.drawArrays(gl.POINTS, 0, shown);
     canvas.dataset.points = count;
   }
 
-  let from = null;
-  canvas.onpointerdown = (event) => { from = [event.clientX, event.clientY]; canvas.setPointerCapture(event.pointerId); };
-  canvas.onpointerup = () => { from = null; };
+  // While the model is turned it keeps up with the hand: of so many points one is drawn.
+  function beat(before, now) {
+    if (from === null) return;
+    if (now - before > SLOW) every = Math.min(2 * every, SPARSEST);
+    requestAnimationFrame((next) => beat(now, next));
+  }
+
+  canvas.onpointerdown = (event) => {
+    from = [event.clientX, event.clientY];
+    canvas.setPointerCapture(event.pointerId);
+    requestAnimationFrame((now) => beat(now, now));
+  };
+  canvas.onpointerup = canvas.onpointercancel = () => { from = null; every = 1; draw(); };
   canvas.onpointermove = (event) => {
     if (!from) return;
     yaw += (event.clientX - from[0]) / 150;
