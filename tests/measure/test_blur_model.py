@@ -31,10 +31,16 @@ LENS = 1.0**2 + 0.7**2
 SIZE, ABOVE = (280, 174), 222
 """Columns and rows of its pictures that show the pipe, and the rows above them."""
 FIELDS = 6
+WELL, DITHER = 6e6, 0.4
+"""Electrons that fill a pixel, and its noise in the dark [grey levels]."""
 
 
 def make_scene(water: str) -> Scene:
-    """Put a pipe before the PAL rig, in water without particles; its sensor hardly has noise."""
+    """Put a pipe before the PAL rig, in water without particles.
+
+    Its sensor has the noise that dithers what is rounded, and hardly more: without any, pictures
+    look as if an encoder had smoothed them.
+    """
     text, label, folder = read_scene(f"sphere-c{water}")
     document = tomlkit.parse(text)
     pipe = {"mesh": "cylinder", "radius_mm": 50.0, "length_mm": 600.0}
@@ -47,7 +53,7 @@ def make_scene(water: str) -> Scene:
     return replace(
         scene,
         rig=replace(scene.rig, camera=camera),
-        sensor=replace(scene.sensor, full_well=9e6),
+        sensor=replace(scene.sensor, full_well=WELL, read_noise=DITHER * WELL / 255),
         particles=replace(scene.particles, per_frame=0.0),
     )
 
