@@ -33,7 +33,6 @@ export function pointView(canvas) {
   gl.useProgram(program);
   gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
   gl.enableVertexAttribArray(0);
-  gl.vertexAttribPointer(0, ROW, gl.FLOAT, false, 0, 0);
 
   function add(rows) {
     const added = rows.length / ROW;
