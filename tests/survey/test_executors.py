@@ -71,10 +71,10 @@ def serial(recorded, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def cluster():
-    """Give the address of a cluster that begins once for all stages; one worker loads but once."""
+    """Give the address of a cluster that begins once for all stages."""
     distributed = pytest.importorskip("distributed", reason="the extra [cluster] is not installed")
     settings = {"threads_per_worker": 1, "dashboard_address": None, "silence_logs": 50}
-    with distributed.LocalCluster(n_workers=1, **settings) as cluster:
+    with distributed.LocalCluster(n_workers=2, **settings) as cluster:
         yield cluster.scheduler_address
 
 
